@@ -1,0 +1,370 @@
+//! Curves: joints, options, the three calls.
+
+use crate::code::{Failure, finish, minvar_code, minvar_error, minvar_status};
+use crate::raw::{array, array_mut, put, reference, writable};
+use core::ffi::c_void;
+use kernel::curve::{self, Curve, Element, Functional, Joint, Options};
+use kernel::solve::{Control, Observer, Record};
+
+/// Whether a quantity is the solver's to choose.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub enum minvar_given {
+    /// Not given: the solver finds a start value and the best value.
+    MINVAR_FREE = 0,
+    /// A start value: the solver goes on from it.
+    MINVAR_INITIAL = 1,
+    /// Kept exactly.
+    MINVAR_FIXED = 2,
+}
+
+/// How the two elements at a joint meet.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub enum minvar_continuity {
+    /// A corner: tangent and curvature independent on either side.
+    MINVAR_G0 = 0,
+    /// A common tangent, curvatures independent on either side.
+    MINVAR_G1 = 1,
+    /// Common tangent and curvature.
+    MINVAR_G2 = 2,
+}
+
+/// What a curve is to minimise.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub enum minvar_functional {
+    /// The variation of curvature, integral of (d kappa/ds)^2 ds (thesis 4.2); 1/length^3.
+    MINVAR_MVC = 0,
+    /// The bending energy, integral of kappa^2 ds (thesis 4.1); 1/length.
+    MINVAR_MEC = 1,
+}
+
+/// A vector and what it is. The value of a free quantity is not read.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct minvar_quantity {
+    /// One of enum minvar_given.
+    pub given: u32,
+    /// The vector x, y, z: a position, a tangent of any length but zero, or a curvature vector.
+    pub value: [f64; 3],
+}
+
+/// A joint: a point of the curve with what is known there (thesis 4.1, 4.5).
+///
+/// Tangent and curvature are given for the arriving side (0) and the leaving side (1). Where the continuity makes a
+/// quantity common (the tangent at G1 and G2, the curvature at G2) both entries must be the same. The curvature vector
+/// points to the centre of curvature, has length 1/radius and is perpendicular to the tangent. A fixed curvature at a
+/// tangent that is not fixed means its size: the direction follows the tangent.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct minvar_joint {
+    /// One of enum minvar_continuity.
+    pub continuity: u32,
+    /// The point.
+    pub position: minvar_quantity,
+    /// Arriving and leaving tangent.
+    pub tangent: [minvar_quantity; 2],
+    /// Arriving and leaving curvature vector.
+    pub curvature: [minvar_quantity; 2],
+}
+
+/// The designer's data: joints in order along the curve, owned by the caller and only read.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct minvar_curve {
+    /// The joints; at least two, three of a closed curve.
+    pub joints: *const minvar_joint,
+    /// How many.
+    pub joint_count: usize,
+    /// Not 0: the curve goes on from the last joint to the first, which is not repeated.
+    pub closed: i32,
+}
+
+/// The options of a curve: start from minvar_options_defaults().
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct minvar_options {
+    /// One of enum minvar_functional. Default MINVAR_MVC.
+    pub functional: u32,
+    /// Elements between two joints, 1 to 1024 (thesis 4.6). More approach the true curve. Default 1.
+    pub elements_per_span: u32,
+    /// Gauss-Lobatto points an element, 12 to 32. Fewer than 20 can be cheated by an optimiser. Default 24.
+    pub quadrature_points: u32,
+    /// The largest number of iterations (trial steps). Default 200.
+    pub max_iterations: u32,
+    /// 2 for a planar curve, 3 for a space curve, 0 to find out: planar where all data lie in a plane. Default 0.
+    pub dimension: u32,
+    /// Converged when another step promises to lower the functional by less than this fraction, or 20 iterations
+    /// together lowered it by less than a thousand times that; 0 to below 1. Default 1e-12.
+    pub relative_decrease: f64,
+}
+
+/// A quintic element in Hermite form (thesis 4.5). Plain data: it may be copied, stored and sent.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct minvar_element {
+    /// The rows C(0), C'(0), C''(0), C''(1), C'(1), C(1), each x, y, z.
+    pub rows: [[f64; 3]; 6],
+}
+
+/// What one iteration did: one trial step, accepted or not. In the caller's units.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct minvar_record {
+    /// The functional after the iteration. In the first iterations it holds a term that keeps the parametrisation even.
+    pub value: f64,
+    /// The decrease that the quadratic model promised for this step.
+    pub predicted: f64,
+    /// The decrease that the step brought; negative where it was refused for raising the functional.
+    pub actual: f64,
+    /// The largest gradient component before the step, each times its unknown's natural size.
+    pub gradient: f64,
+    /// The length of the step in natural sizes.
+    pub step: f64,
+    /// The shift that was added to the scaled Hessian; 0 is a pure Newton step.
+    pub shift: f64,
+}
+
+/// How a curve came out. All figures in the caller's units.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct minvar_report {
+    /// How the computation ended.
+    pub status: minvar_status,
+    /// 1 if the curve was computed in a plane, 0 in space.
+    pub planar: i32,
+    /// The number of iterations: trial steps, accepted or not.
+    pub iterations: usize,
+    /// How often an element was linearised, over all elements: the work that was done.
+    pub linearisations: usize,
+    /// The number of unknowns.
+    pub unknowns: usize,
+    /// The functional's value by the rule that was minimised with.
+    pub value: f64,
+    /// The functional's value by a 32-point rule. Where it differs from `value` by more than rounding, the curve is too
+    /// wild for its elements: take more of them.
+    pub fine_value: f64,
+    /// The length L.
+    pub length: f64,
+    /// The variation of curvature V, integral of (d kappa/ds)^2 ds.
+    pub variation: f64,
+    /// The bending energy E, integral of kappa^2 ds.
+    pub bending: f64,
+    /// The largest gradient component, each times its unknown's natural size, as a fraction of the functional.
+    pub gradient: f64,
+    /// The decrease that another Newton step would promise; infinite where the Hessian is not positive definite.
+    pub decrement: f64,
+}
+
+/// Watches a solve: called after every iteration with its number, from 1, and its record, which lives until the
+/// function returns. Return 0 to go on, anything else to stop with MINVAR_CANCELLED and the best curve so far. It must
+/// not jump out of the call.
+pub type minvar_observer =
+    Option<unsafe extern "C" fn(context: *mut c_void, iteration: usize, record: *const minvar_record) -> i32>;
+
+/// The same layout in C and in the kernel, field by field.
+macro_rules! same_layout {
+    ($ours:ty = $kernels:ty { $($our:ident = $kernel:ident),* }) => {
+        const _: () = {
+            assert!(size_of::<$ours>() == size_of::<$kernels>());
+            assert!(align_of::<$ours>() == align_of::<$kernels>());
+            $(assert!(core::mem::offset_of!($ours, $our) == core::mem::offset_of!($kernels, $kernel));)*
+        };
+    };
+}
+pub(crate) use same_layout;
+
+same_layout!(minvar_quantity = curve::Quantity { given = given, value = value });
+same_layout!(minvar_joint = Joint {
+    continuity = continuity, position = position, tangent = tangent, curvature = curvature
+});
+same_layout!(minvar_element = Element { rows = rows });
+same_layout!(minvar_record = Record {
+    value = value, predicted = predicted, actual = actual, gradient = gradient, step = step, shift = shift
+});
+
+/// The kernel's view of C's data.
+///
+/// # Safety
+/// `curve` is NULL or as its documentation says, and stays so while the view lives.
+unsafe fn view<'a>(curve: *const minvar_curve) -> Result<Curve<'a>, Failure> {
+    // SAFETY: promised by the caller.
+    let data = unsafe { reference(curve)? };
+    // SAFETY: promised by the caller; the layouts are the same, and the kernel's joint is numbers without invalid values.
+    let joints = unsafe { array(data.joints.cast::<Joint>(), data.joint_count)? };
+    Ok(Curve { joints, closed: data.closed != 0 })
+}
+
+/// # Safety
+/// `options` is NULL or valid for reading.
+unsafe fn options_of(options: *const minvar_options) -> Result<Options, Failure> {
+    // SAFETY: promised by the caller.
+    let given = unsafe { reference(options)? };
+    Ok(Options {
+        functional: Functional(given.functional),
+        elements_per_span: given.elements_per_span,
+        quadrature_points: given.quadrature_points,
+        max_iterations: given.max_iterations,
+        dimension: given.dimension,
+        relative_decrease: given.relative_decrease,
+    })
+}
+
+/// The options' defaults, named at each field of minvar_options.
+#[unsafe(no_mangle)]
+pub extern "C" fn minvar_options_defaults() -> minvar_options {
+    let defaults = Options::DEFAULT;
+    minvar_options {
+        functional: defaults.functional.0,
+        elements_per_span: defaults.elements_per_span,
+        quadrature_points: defaults.quadrature_points,
+        max_iterations: defaults.max_iterations,
+        dimension: defaults.dimension,
+        relative_decrease: defaults.relative_decrease,
+    }
+}
+
+const FREE: minvar_quantity = minvar_quantity { given: minvar_given::MINVAR_FREE as u32, value: [0.0; 3] };
+
+/// A G2 joint at a fixed point with free tangent and curvature.
+#[unsafe(no_mangle)]
+pub extern "C" fn minvar_joint_at(x: f64, y: f64, z: f64) -> minvar_joint {
+    minvar_joint {
+        continuity: minvar_continuity::MINVAR_G2 as u32,
+        position: minvar_quantity { given: minvar_given::MINVAR_FIXED as u32, value: [x, y, z] },
+        tangent: [FREE; 2],
+        curvature: [FREE; 2],
+    }
+}
+
+/// The same joint with this tangent on both sides. `given`: one of enum minvar_given.
+#[unsafe(no_mangle)]
+pub extern "C" fn minvar_joint_with_tangent(joint: minvar_joint, given: u32, x: f64, y: f64, z: f64) -> minvar_joint {
+    minvar_joint { tangent: [minvar_quantity { given, value: [x, y, z] }; 2], ..joint }
+}
+
+/// The same joint with this curvature vector on both sides. `given`: one of enum minvar_given.
+#[unsafe(no_mangle)]
+pub extern "C" fn minvar_joint_with_curvature(
+    joint: minvar_joint,
+    given: u32,
+    x: f64,
+    y: f64,
+    z: f64,
+) -> minvar_joint {
+    minvar_joint { curvature: [minvar_quantity { given, value: [x, y, z] }; 2], ..joint }
+}
+
+/// The same joint with another continuity: one of enum minvar_continuity.
+#[unsafe(no_mangle)]
+pub extern "C" fn minvar_joint_with_continuity(joint: minvar_joint, continuity: u32) -> minvar_joint {
+    minvar_joint { continuity, ..joint }
+}
+
+/// The number of elements that a curve will have: spans times elements_per_span. 0 if a pointer is NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn minvar_curve_elements_len(curve: *const minvar_curve, options: *const minvar_options) -> usize {
+    // SAFETY: promised by the caller.
+    match unsafe { (view(curve), options_of(options)) } {
+        (Ok(curve), Ok(options)) => curve::elements_len(&curve, &options),
+        _ => 0,
+    }
+}
+
+/// The workspace, in doubles, that minvar_curve_solve() needs for these data and options. It depends on the number of
+/// joints, on what is fixed at them and on whether they lie in a plane, not on the numbers otherwise.
+///
+/// Errors: all that minvar_curve_solve() finds wrong with the data and options.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn minvar_curve_workspace_len(
+    curve: *const minvar_curve,
+    options: *const minvar_options,
+    len: *mut usize,
+    error: *mut minvar_error,
+) -> minvar_code {
+    // SAFETY: promised by the caller.
+    let result = unsafe {
+        (|| {
+            let found = curve::workspace_len(&view(curve)?, &options_of(options)?)?;
+            put(len, found)
+        })()
+    };
+    // SAFETY: promised by the caller.
+    unsafe { finish(result, error) }
+}
+
+/// The caller's observer as the kernel's.
+struct Watch {
+    observer: minvar_observer,
+    context: *mut c_void,
+}
+
+impl Observer for Watch {
+    fn iteration(&mut self, number: usize, record: &Record) -> Control {
+        let Some(observer) = self.observer else { return Control::Continue };
+        let record: *const Record = record;
+        // SAFETY: the caller gave this function for this call; the layouts of the records are the same.
+        let answer = unsafe { observer(self.context, number, record.cast()) };
+        if answer == 0 { Control::Continue } else { Control::Cancel }
+    }
+}
+
+/// Computes a curve (thesis chapter 4).
+///
+/// `workspace`: `workspace_len` doubles, at least what minvar_curve_workspace_len() says, in any condition. `observer`
+/// may be NULL. `elements` receives minvar_curve_elements_len() elements in order along the curve; `elements_len` is the
+/// room. `records` (may be NULL with `records_len` 0) receives a record an iteration as far as it reaches. Fixed
+/// positions and tangent directions are kept exactly; planar data give a curve in their plane. The arrays must not
+/// overlap.
+///
+/// Errors: whatever is wrong with data, options or memory, found before any work; elements and report are untouched
+/// then. A curve that did not converge is no error: see `report->status`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn minvar_curve_solve(
+    curve: *const minvar_curve,
+    options: *const minvar_options,
+    workspace: *mut f64,
+    workspace_len: usize,
+    observer: minvar_observer,
+    observer_context: *mut c_void,
+    elements: *mut minvar_element,
+    elements_len: usize,
+    records: *mut minvar_record,
+    records_len: usize,
+    report: *mut minvar_report,
+    error: *mut minvar_error,
+) -> minvar_code {
+    // SAFETY: promised by the caller; the layouts of elements and records are the same as the kernel's.
+    let result = unsafe {
+        (|| {
+            let curve = view(curve)?;
+            let options = options_of(options)?;
+            let workspace = array_mut(workspace, workspace_len)?;
+            let elements = array_mut(elements.cast::<Element>(), elements_len)?;
+            let records = array_mut(records.cast::<Record>(), records_len)?;
+            writable(report)?;
+            let mut watch = Watch { observer, context: observer_context };
+            let found = curve::solve(&curve, &options, workspace, elements, records, &mut watch)?;
+            put(
+                report,
+                minvar_report {
+                    status: found.status.into(),
+                    planar: i32::from(found.planar),
+                    iterations: found.iterations,
+                    linearisations: found.linearisations,
+                    unknowns: found.unknowns,
+                    value: found.value,
+                    fine_value: found.fine_value,
+                    length: found.length,
+                    variation: found.variation,
+                    bending: found.bending,
+                    gradient: found.gradient,
+                    decrement: found.decrement,
+                },
+            )
+        })()
+    };
+    // SAFETY: promised by the caller.
+    unsafe { finish(result, error) }
+}

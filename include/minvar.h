@@ -1,0 +1,588 @@
+/*
+ * minvar: fair curves for people who make things.
+ *
+ * CONVENTIONS
+ *
+ * Units      Lengths are in the caller's unit, curvatures 1/length, angles radians, feeds length/minute. A tolerance is
+ *            a length. Planar signed curvature is positive to the left. Parameters run from 0 to 1 an element.
+ * Results    Every function that can fail returns a minvar_code, MINVAR_OK (0) if it did what it says. On an error
+ *            nothing was computed and no result was written (text that a writer got is the one exception, and is named).
+ *            How a computation ended is not an error but a minvar_status in its report.
+ * Arguments  const input first, then memory, then output, last the error, which may be NULL. Other pointers must not be
+ *            NULL unless their function says so; NULL, misaligned pointers and wrong counts come back as codes. A
+ *            pointer that is neither NULL nor valid cannot be detected: behaviour is undefined then, as in all of C.
+ * Memory     The library never allocates, keeps no pointer after it returned, and has no global state. Workspaces come
+ *            from the caller, who asks for the length first; one may be used again, dirty, for anything.
+ * Threads    Any number may call at once, each with its own memory.
+ * Numbers    NaN, infinities and constants that are not defined come back as codes. The same input gives the same bits on
+ *            every machine with IEEE 754 doubles.
+ *
+ * Licence: MIT or Apache-2.0. This file is written by cbindgen from ffi/: do not edit it.
+ */
+
+
+#ifndef MINVAR_H
+#define MINVAR_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+
+// The number of this interface. It grows when something changes that compiled programs would notice.
+#define MINVAR_ABI 1
+
+// What was wrong with a call. Nothing was computed and no result was written, unless the code says otherwise. The
+// numbers are fixed for good.
+typedef enum minvar_code {
+    // Nothing: the call did what it says.
+    MINVAR_OK = 0,
+    // A pointer is NULL that must not be.
+    MINVAR_NULL_POINTER = 1,
+    // A pointer is not aligned for its type.
+    MINVAR_MISALIGNED = 2,
+    // A length is larger than memory can be.
+    MINVAR_TOO_LONG = 3,
+    // An open curve has fewer than two joints. `needed`, `given`.
+    MINVAR_TOO_FEW_JOINTS = 10,
+    // A closed curve has fewer than three joints. `needed`, `given`.
+    MINVAR_CLOSED_TOO_FEW_JOINTS = 11,
+    // A number of a joint is NaN or infinite. `index`: the joint.
+    MINVAR_JOINT_NOT_FINITE = 12,
+    // A status or continuity of a joint is not one of the constants. `index`: the joint.
+    MINVAR_UNKNOWN_CODE = 13,
+    // Two neighbouring joints coincide. `index`: the first of them.
+    MINVAR_COINCIDENT_JOINTS = 14,
+    // A given tangent is the zero vector. `index`: the joint.
+    MINVAR_ZERO_TANGENT = 15,
+    // A given curvature is not perpendicular to the given tangent. `index`: the joint.
+    MINVAR_CURVATURE_NOT_PERPENDICULAR = 16,
+    // A curvature is given where the direction of the curve is unknown. `index`: the joint.
+    MINVAR_CURVATURE_NEEDS_TANGENT = 17,
+    // The sides of a joint differ in what its continuity makes common. `index`: the joint.
+    MINVAR_SIDES_DIFFER = 18,
+    // Fewer than two joints have positions.
+    MINVAR_NO_POSITION = 19,
+    // Lengths beyond 1e-90 to 1e90.
+    MINVAR_SIZE_OUT_OF_RANGE = 20,
+    // A planar curve was asked for but the data do not lie in a plane.
+    MINVAR_NOT_PLANAR = 21,
+    // An option has a value that it cannot have; the message names it.
+    MINVAR_BAD_OPTION = 22,
+    // The workspace is too short. `needed`, `given`, in doubles.
+    MINVAR_WORKSPACE_TOO_SMALL = 23,
+    // An array for results is too short. `needed`, `given`, in its entries.
+    MINVAR_RESULT_TOO_SHORT = 24,
+    // There are no elements.
+    MINVAR_NO_ELEMENTS = 40,
+    // A number of an element is NaN, infinite or too large. `index`: the element.
+    MINVAR_ELEMENT_NOT_FINITE = 41,
+    // An element has no tangent somewhere: its derivative vanishes. `index`: the element.
+    MINVAR_IRREGULAR = 42,
+    // The place is not on the curve.
+    MINVAR_OUT_OF_RANGE = 43,
+    // The tolerance is zero, negative or not finite.
+    MINVAR_BAD_TOLERANCE = 60,
+    // The tolerance is finer than the numbers allow; the message says how fine it can be.
+    MINVAR_TOLERANCE_TOO_FINE = 61,
+    // An element does not begin where the one before ends. `index`: the later element.
+    MINVAR_GAP = 62,
+    // An element leaves the plane z = constant, which arcs need. `index`: the element.
+    MINVAR_PATH_NOT_PLANAR = 63,
+    // The number of decimals is not 6 to 9.
+    MINVAR_BAD_DECIMALS = 70,
+    // The feed is not positive and finite.
+    MINVAR_BAD_FEED = 71,
+    // The plunge feed is not positive and finite.
+    MINVAR_BAD_PLUNGE_FEED = 72,
+    // The depth is not finite or too large.
+    MINVAR_BAD_DEPTH = 73,
+    // The safe height is not above the cut.
+    MINVAR_BAD_SAFE_HEIGHT = 74,
+    // A coordinate is too large for the decimals. `index`: the element.
+    MINVAR_COORDINATE_TOO_LARGE = 75,
+    // The caller's writer or visitor asked to stop: what was written is incomplete.
+    MINVAR_STOPPED = 76,
+} minvar_code;
+
+// How a computation ended. A status is not an error: figures were computed, and the status says what they are worth.
+// The numbers are fixed for good.
+typedef enum minvar_status {
+    // Nothing was computed yet.
+    MINVAR_UNSOLVED = 0,
+    // A minimum was reached: the functional cannot be lowered by what the tolerance asks for.
+    MINVAR_CONVERGED = 1,
+    // No further progress is possible in this precision; the figures say how near the minimum is.
+    MINVAR_STALLED = 2,
+    // The allowed number of iterations was used up.
+    MINVAR_ITERATION_LIMIT = 3,
+    // The shape grows without limit while the functional sinks: these data have no minimum.
+    MINVAR_UNBOUNDED = 4,
+    // The observer asked to stop.
+    MINVAR_CANCELLED = 5,
+} minvar_status;
+
+// Whether a quantity is the solver's to choose.
+typedef enum minvar_given {
+    // Not given: the solver finds a start value and the best value.
+    MINVAR_FREE = 0,
+    // A start value: the solver goes on from it.
+    MINVAR_INITIAL = 1,
+    // Kept exactly.
+    MINVAR_FIXED = 2,
+} minvar_given;
+
+// How the two elements at a joint meet.
+typedef enum minvar_continuity {
+    // A corner: tangent and curvature independent on either side.
+    MINVAR_G0 = 0,
+    // A common tangent, curvatures independent on either side.
+    MINVAR_G1 = 1,
+    // Common tangent and curvature.
+    MINVAR_G2 = 2,
+} minvar_continuity;
+
+// What a curve is to minimise.
+typedef enum minvar_functional {
+    // The variation of curvature, integral of (d kappa/ds)^2 ds (thesis 4.2); 1/length^3.
+    MINVAR_MVC = 0,
+    // The bending energy, integral of kappa^2 ds (thesis 4.1); 1/length.
+    MINVAR_MEC = 1,
+} minvar_functional;
+
+// The unit of all lengths of a program: the curve's, the tolerance's and the feed's.
+typedef enum minvar_units {
+    // G21.
+    MINVAR_MILLIMETRES = 0,
+    // G20.
+    MINVAR_INCHES = 1,
+} minvar_units;
+
+// The machine's plane in which the curve's x and y lie.
+typedef enum minvar_plane {
+    // G17: x, y, z are the machine's X, Y, Z.
+    MINVAR_XY = 0,
+    // G18: x, y, z are the machine's Z, X, Y.
+    MINVAR_ZX = 1,
+    // G19: x, y, z are the machine's Y, Z, X.
+    MINVAR_YZ = 2,
+} minvar_plane;
+
+// How a path is cut.
+typedef enum minvar_motion {
+    // G2/G3 arcs and G1 lines of a curve in a plane z = constant.
+    MINVAR_ARCS = 0,
+    // G1 only, for any curve.
+    MINVAR_CHORDS = 1,
+} minvar_motion;
+
+// A quintic element in Hermite form (thesis 4.5). Plain data: it may be copied, stored and sent.
+typedef struct minvar_element {
+    // The rows C(0), C'(0), C''(0), C''(1), C'(1), C(1), each x, y, z.
+    double rows[6][3];
+} minvar_element;
+
+// An error with what it is about. Passed as the last argument, it may be NULL if nobody wants to know.
+typedef struct minvar_error {
+    // The code, as returned.
+    enum minvar_code code;
+    // The joint, element or option that is to blame, where the code says so; else 0.
+    size_t index;
+    // The length that is needed, where the code says so; else 0.
+    size_t needed;
+    // The length that was given, where the code says so; else 0.
+    size_t given;
+    // One sentence in English, NUL-terminated, that names the culprit.
+    char message[192];
+} minvar_error;
+
+// The options of a curve: start from minvar_options_defaults().
+typedef struct minvar_options {
+    // One of enum minvar_functional. Default MINVAR_MVC.
+    uint32_t functional;
+    // Elements between two joints, 1 to 1024 (thesis 4.6). More approach the true curve. Default 1.
+    uint32_t elements_per_span;
+    // Gauss-Lobatto points an element, 12 to 32. Fewer than 20 can be cheated by an optimiser. Default 24.
+    uint32_t quadrature_points;
+    // The largest number of iterations (trial steps). Default 200.
+    uint32_t max_iterations;
+    // 2 for a planar curve, 3 for a space curve, 0 to find out: planar where all data lie in a plane. Default 0.
+    uint32_t dimension;
+    // Converged when another step promises to lower the functional by less than this fraction, or 20 iterations
+    // together lowered it by less than a thousand times that; 0 to below 1. Default 1e-12.
+    double relative_decrease;
+} minvar_options;
+
+// A vector and what it is. The value of a free quantity is not read.
+typedef struct minvar_quantity {
+    // One of enum minvar_given.
+    uint32_t given;
+    // The vector x, y, z: a position, a tangent of any length but zero, or a curvature vector.
+    double value[3];
+} minvar_quantity;
+
+// A joint: a point of the curve with what is known there (thesis 4.1, 4.5).
+//
+// Tangent and curvature are given for the arriving side (0) and the leaving side (1). Where the continuity makes a
+// quantity common (the tangent at G1 and G2, the curvature at G2) both entries must be the same. The curvature vector
+// points to the centre of curvature, has length 1/radius and is perpendicular to the tangent. A fixed curvature at a
+// tangent that is not fixed means its size: the direction follows the tangent.
+typedef struct minvar_joint {
+    // One of enum minvar_continuity.
+    uint32_t continuity;
+    // The point.
+    struct minvar_quantity position;
+    // Arriving and leaving tangent.
+    struct minvar_quantity tangent[2];
+    // Arriving and leaving curvature vector.
+    struct minvar_quantity curvature[2];
+} minvar_joint;
+
+// The designer's data: joints in order along the curve, owned by the caller and only read.
+typedef struct minvar_curve {
+    // The joints; at least two, three of a closed curve.
+    const struct minvar_joint *joints;
+    // How many.
+    size_t joint_count;
+    // Not 0: the curve goes on from the last joint to the first, which is not repeated.
+    int32_t closed;
+} minvar_curve;
+
+// What one iteration did: one trial step, accepted or not. In the caller's units.
+typedef struct minvar_record {
+    // The functional after the iteration. In the first iterations it holds a term that keeps the parametrisation even.
+    double value;
+    // The decrease that the quadratic model promised for this step.
+    double predicted;
+    // The decrease that the step brought; negative where it was refused for raising the functional.
+    double actual;
+    // The largest gradient component before the step, each times its unknown's natural size.
+    double gradient;
+    // The length of the step in natural sizes.
+    double step;
+    // The shift that was added to the scaled Hessian; 0 is a pure Newton step.
+    double shift;
+} minvar_record;
+
+// Watches a solve: called after every iteration with its number, from 1, and its record, which lives until the
+// function returns. Return 0 to go on, anything else to stop with MINVAR_CANCELLED and the best curve so far. It must
+// not jump out of the call.
+typedef int32_t (*minvar_observer)(void *context, size_t iteration, const struct minvar_record *record);
+
+// How a curve came out. All figures in the caller's units.
+typedef struct minvar_report {
+    // How the computation ended.
+    enum minvar_status status;
+    // 1 if the curve was computed in a plane, 0 in space.
+    int32_t planar;
+    // The number of iterations: trial steps, accepted or not.
+    size_t iterations;
+    // How often an element was linearised, over all elements: the work that was done.
+    size_t linearisations;
+    // The number of unknowns.
+    size_t unknowns;
+    // The functional's value by the rule that was minimised with.
+    double value;
+    // The functional's value by a 32-point rule. Where it differs from `value` by more than rounding, the curve is too
+    // wild for its elements: take more of them.
+    double fine_value;
+    // The length L.
+    double length;
+    // The variation of curvature V, integral of (d kappa/ds)^2 ds.
+    double variation;
+    // The bending energy E, integral of kappa^2 ds.
+    double bending;
+    // The largest gradient component, each times its unknown's natural size, as a fraction of the functional.
+    double gradient;
+    // The decrease that another Newton step would promise; infinite where the Hessian is not positive definite.
+    double decrement;
+} minvar_report;
+
+// What holds at a place of a chain, all in the caller's units.
+typedef struct minvar_point {
+    // The element, from 0.
+    size_t element;
+    // The parameter in it, 0 to 1.
+    double parameter;
+    // The arc length from the start of the chain.
+    double arc_length;
+    // The position.
+    double point[3];
+    // The unit tangent.
+    double tangent[3];
+    // The curvature vector, perpendicular to the tangent, towards the centre of curvature; 1/length.
+    double curvature[3];
+    // Planar chains: the curvature, positive to the left seen from the tip of the plane's normal (+z, +x or +y for
+    // planes parallel to a coordinate plane). Space curves: the curvature's size. 1/length.
+    double signed_curvature;
+    // The derivative of signed_curvature by arc length; 1/length^2.
+    double curvature_derivative;
+    // The torsion, positive for a right-handed helix; 0 where the curvature vanishes; 1/length.
+    double torsion;
+} minvar_point;
+
+// The figures of a whole chain.
+typedef struct minvar_figures {
+    // The length L.
+    double length;
+    // The variation of curvature V, integral of (d kappa/ds)^2 ds; 1/length^3.
+    double variation;
+    // The bending energy E, integral of kappa^2 ds; 1/length.
+    double bending;
+    // The place of the least signed curvature (space curves: size of curvature).
+    struct minvar_point least_curvature;
+    // The place of the largest.
+    struct minvar_point largest_curvature;
+    // The low corner of the bounding box.
+    double box_low[3];
+    // The high corner of the bounding box.
+    double box_high[3];
+} minvar_figures;
+
+// One move of a path, from where the last one ended.
+typedef struct minvar_move {
+    // 0: a line; 1: an arc to the left; -1: an arc to the right (clockwise).
+    int32_t turn;
+    // The end point x, y, z.
+    double end[3];
+    // The centre of an arc x, y, z; zeros of a line.
+    double centre[3];
+    // Proven: neither this move from its part of the curve nor that part from the move is farther than this length.
+    double deviation;
+} minvar_move;
+
+// Receives the moves of a path in order; `move` lives until the function returns. Return 0 to go on, anything else to
+// stop.
+typedef int32_t (*minvar_visitor)(void *context, const struct minvar_move *move_);
+
+// What a program is to be: start from minvar_gcode_defaults(). Lengths are in the program's unit.
+typedef struct minvar_gcode_options {
+    // The greatest distance between the printed path and the curve, positive. No default.
+    double tolerance;
+    // The cutting feed, length/minute, positive. No default.
+    double feed;
+    // The feed while plunging, length/minute; 0 for the cutting feed. Default 0.
+    double plunge_feed;
+    // The third axis while moving to the start and after the end; above the cut. No default.
+    double safe_height;
+    // What is added to the curve's z while cutting: negative goes into the material. Default 0.
+    double depth;
+    // One of enum minvar_units. Default MINVAR_MILLIMETRES.
+    uint32_t units;
+    // One of enum minvar_plane. Default MINVAR_XY.
+    uint32_t plane;
+    // One of enum minvar_motion. Default MINVAR_ARCS.
+    uint32_t motion;
+    // Decimals printed, 6 to 9. Default 6.
+    uint32_t decimals;
+    // Not 0: explain the lines by comments in parentheses. Default 0.
+    int32_t comments;
+} minvar_gcode_options;
+
+// Receives text, `length` bytes that are not NUL-terminated and live until the function returns. Return 0 if all was
+// written, anything else to stop.
+typedef int32_t (*minvar_writer)(void *context, const char *text, size_t length);
+
+// What was written.
+typedef struct minvar_gcode_summary {
+    // Lines of text.
+    size_t lines;
+    // G2 and G3 moves.
+    size_t arcs;
+    // G1 moves that cut.
+    size_t chords;
+    // The length of the cut.
+    double length;
+    // The time of the cut at the programmed feed, minutes, without acceleration, plunge and rapids.
+    double minutes;
+    // Proven: no point of the printed cut is farther than this from the curve, nor the curve from the cut.
+    double deviation;
+} minvar_gcode_summary;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// The version of the library as `"MAJOR.MINOR.PATCH"`; static.
+const char *minvar_version(void);
+
+// 1 if the library has the interface that the caller was compiled with, else 0: call
+// `minvar_abi_check(MINVAR_ABI)` once where the library is loaded dynamically.
+int32_t minvar_abi_check(uint32_t abi);
+
+// One English sentence on a status that a user can act on; static. A number that is no status gives "unknown status".
+const char *minvar_status_sentence(int32_t status);
+
+// The six Bézier control points of an element, x, y, z each.
+//
+// Errors: MINVAR_NULL_POINTER.
+enum minvar_code minvar_element_bezier(const struct minvar_element *element,
+                                       double (*points)[6][3],
+                                       struct minvar_error *error);
+
+// The numbers of control points and of knots of a chain's B-spline.
+//
+// Errors: MINVAR_NULL_POINTER.
+enum minvar_code minvar_bspline_len(const struct minvar_element *elements,
+                                    size_t count,
+                                    size_t *control_count,
+                                    size_t *knot_count,
+                                    struct minvar_error *error);
+
+// The whole chain as one non-rational B-spline of degree 5, the same curve point by point, C1 where the tangent is
+// continuous. Knots from 0 to 1, six-fold at the ends, four-fold at smooth joints, five-fold at corners.
+//
+// `controls` receives control points x, y, z, `knots` six more knots than control points; the lengths are the room, at
+// least what minvar_bspline_len() says.
+//
+// Errors: MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_IRREGULAR, MINVAR_RESULT_TOO_SHORT.
+enum minvar_code minvar_bspline(const struct minvar_element *elements,
+                                size_t count,
+                                double (*controls)[3],
+                                size_t controls_len,
+                                double *knots,
+                                size_t knots_len,
+                                struct minvar_error *error);
+
+// The options' defaults, named at each field of minvar_options.
+struct minvar_options minvar_options_defaults(void);
+
+// A G2 joint at a fixed point with free tangent and curvature.
+struct minvar_joint minvar_joint_at(double x, double y, double z);
+
+// The same joint with this tangent on both sides. `given`: one of enum minvar_given.
+struct minvar_joint minvar_joint_with_tangent(struct minvar_joint joint,
+                                              uint32_t given,
+                                              double x,
+                                              double y,
+                                              double z);
+
+// The same joint with this curvature vector on both sides. `given`: one of enum minvar_given.
+struct minvar_joint minvar_joint_with_curvature(struct minvar_joint joint,
+                                                uint32_t given,
+                                                double x,
+                                                double y,
+                                                double z);
+
+// The same joint with another continuity: one of enum minvar_continuity.
+struct minvar_joint minvar_joint_with_continuity(struct minvar_joint joint, uint32_t continuity);
+
+// The number of elements that a curve will have: spans times elements_per_span. 0 if a pointer is NULL.
+size_t minvar_curve_elements_len(const struct minvar_curve *curve, const struct minvar_options *options);
+
+// The workspace, in doubles, that minvar_curve_solve() needs for these data and options. It depends on the number of
+// joints, on what is fixed at them and on whether they lie in a plane, not on the numbers otherwise.
+//
+// Errors: all that minvar_curve_solve() finds wrong with the data and options.
+enum minvar_code minvar_curve_workspace_len(const struct minvar_curve *curve,
+                                            const struct minvar_options *options,
+                                            size_t *len,
+                                            struct minvar_error *error);
+
+// Computes a curve (thesis chapter 4).
+//
+// `workspace`: `workspace_len` doubles, at least what minvar_curve_workspace_len() says, in any condition. `observer`
+// may be NULL. `elements` receives minvar_curve_elements_len() elements in order along the curve; `elements_len` is the
+// room. `records` (may be NULL with `records_len` 0) receives a record an iteration as far as it reaches. Fixed
+// positions and tangent directions are kept exactly; planar data give a curve in their plane. The arrays must not
+// overlap.
+//
+// Errors: whatever is wrong with data, options or memory, found before any work; elements and report are untouched
+// then. A curve that did not converge is no error: see `report->status`.
+enum minvar_code minvar_curve_solve(const struct minvar_curve *curve,
+                                    const struct minvar_options *options,
+                                    double *workspace,
+                                    size_t workspace_len,
+                                    minvar_observer observer,
+                                    void *observer_context,
+                                    struct minvar_element *elements,
+                                    size_t elements_len,
+                                    struct minvar_record *records,
+                                    size_t records_len,
+                                    struct minvar_report *report,
+                                    struct minvar_error *error);
+
+// Measures a chain of `count` elements.
+//
+// Errors: MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_IRREGULAR.
+enum minvar_code minvar_measure(const struct minvar_element *elements,
+                                size_t count,
+                                struct minvar_figures *figures,
+                                struct minvar_error *error);
+
+// What holds at parameter `t`, 0 to 1, of element `element`, from 0.
+//
+// Errors: MINVAR_OUT_OF_RANGE, MINVAR_IRREGULAR, MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE.
+enum minvar_code minvar_point_at(const struct minvar_element *elements,
+                                 size_t count,
+                                 size_t element,
+                                 double t,
+                                 struct minvar_point *point,
+                                 struct minvar_error *error);
+
+// What holds at arc length `s` from the start, 0 to the length of the chain.
+//
+// Errors: as minvar_point_at().
+enum minvar_code minvar_point_at_length(const struct minvar_element *elements,
+                                        size_t count,
+                                        double s,
+                                        struct minvar_point *point,
+                                        struct minvar_error *error);
+
+// The place of a chain that is nearest to the point x, y, z; of several equally near ones the first. No place is
+// missed: it is found from the roots of a polynomial.
+//
+// Errors: as minvar_point_at().
+enum minvar_code minvar_closest_point(const struct minvar_element *elements,
+                                      size_t count,
+                                      double x,
+                                      double y,
+                                      double z,
+                                      struct minvar_point *point,
+                                      struct minvar_error *error);
+
+// Calls `visit` with the chords of a chain, each within `tolerance` (a length) of its part: as few as a greedy choice
+// makes.
+//
+// Errors: MINVAR_BAD_TOLERANCE, MINVAR_TOLERANCE_TOO_FINE, MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_GAP,
+// all before the first move; MINVAR_STOPPED if the visitor stopped.
+enum minvar_code minvar_chords(const struct minvar_element *elements,
+                               size_t count,
+                               double tolerance,
+                               minvar_visitor visit,
+                               void *context,
+                               struct minvar_error *error);
+
+// Calls `visit` with tangent-continuous arcs and lines within `tolerance` (a length) of a chain in a plane z =
+// constant: each biarc the longest that can be proven.
+//
+// Errors: as minvar_chords(), and MINVAR_PATH_NOT_PLANAR, MINVAR_IRREGULAR.
+enum minvar_code minvar_arcs(const struct minvar_element *elements,
+                             size_t count,
+                             double tolerance,
+                             minvar_visitor visit,
+                             void *context,
+                             struct minvar_error *error);
+
+// The defaults named at each field, with the three that have none.
+struct minvar_gcode_options minvar_gcode_defaults(double tolerance, double feed, double safe_height);
+
+// Writes a chain as one complete G-code program through `write`. The same input gives the same bytes on every machine.
+//
+// The lines: unit, plane, G90, G91.1, G94, G40, G80; rapid to the safe height and to the start; plunge; the cut at the
+// feed; rapid to the safe height; M2. `summary` may be NULL.
+//
+// Errors: all but MINVAR_STOPPED are found before the first character: the codes from 40 on, and MINVAR_BAD_OPTION for
+// an unknown unit, plane or motion (`index`: 0, 1, 2).
+enum minvar_code minvar_write_gcode(const struct minvar_element *elements,
+                                    size_t count,
+                                    const struct minvar_gcode_options *options,
+                                    minvar_writer write,
+                                    void *context,
+                                    struct minvar_gcode_summary *summary,
+                                    struct minvar_error *error);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* MINVAR_H */

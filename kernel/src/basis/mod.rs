@@ -1,0 +1,5 @@
+//! Polynomials on [0, 1]: quadrature rules and the bases in which elements are written. Knows nothing of curves.
+
+pub mod bernstein;
+pub mod hermite;
+pub mod quadrature;

@@ -1,0 +1,109 @@
+//! Whether a curve's data make sense, before any work.
+
+use super::error::{CurveError, Part};
+use super::joint::{Continuity, Curve, Given, Joint, Quantity};
+use nalgebra::Vector3;
+
+/// Below this fraction of the data's extent two points are the same.
+const COINCIDENT: f64 = 1e-12;
+/// How far a curvature may lean towards its tangent, as a fraction of its length.
+const PERPENDICULAR: f64 = 1e-6;
+
+fn check_quantity(joint: usize, part: Part, quantity: &Quantity) -> Result<(), CurveError> {
+    if quantity.given.0 > Given::FIXED.0 {
+        return Err(CurveError::UnknownCode { joint, part });
+    }
+    if quantity.given != Given::FREE && quantity.value.iter().any(|x| !x.is_finite()) {
+        return Err(CurveError::NotFinite { joint, part });
+    }
+    Ok(())
+}
+
+/// The direction of a vector of any size but zero.
+pub(super) fn direction(vector: &[f64; 3]) -> Option<Vector3<f64>> {
+    let most = vector.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    if !(most > 0.0) {
+        return None;
+    }
+    let scaled = Vector3::from(vector.map(|x| x / most));
+    Some(scaled / libm::sqrt(scaled.dot(&scaled)))
+}
+
+fn check_joint(joint: usize, data: &Joint) -> Result<(), CurveError> {
+    if data.continuity.0 > Continuity::G2.0 {
+        return Err(CurveError::UnknownCode { joint, part: Part::Continuity });
+    }
+    check_quantity(joint, Part::Position, &data.position)?;
+    for side in 0..2 {
+        let (tangent, curvature) = (&data.tangent[side], &data.curvature[side]);
+        check_quantity(joint, Part::Tangent, tangent)?;
+        check_quantity(joint, Part::Curvature, curvature)?;
+        let towards = if tangent.given == Given::FREE {
+            None
+        } else {
+            Some(direction(&tangent.value).ok_or(CurveError::ZeroTangent { joint })?)
+        };
+        if let (Some(towards), true) = (towards, curvature.given != Given::FREE)
+            && let Some(across) = direction(&curvature.value)
+            && across.dot(&towards).abs() > PERPENDICULAR
+        {
+            return Err(CurveError::CurvatureNotPerpendicular { joint });
+        }
+    }
+    let differ = |sides: &[Quantity; 2]| {
+        sides[0].given != sides[1].given || (sides[0].given != Given::FREE && sides[0].value != sides[1].value)
+    };
+    if data.continuity != Continuity::G0 && differ(&data.tangent) {
+        return Err(CurveError::SidesDiffer { joint, part: Part::Tangent });
+    }
+    if data.continuity == Continuity::G2 && differ(&data.curvature) {
+        return Err(CurveError::SidesDiffer { joint, part: Part::Curvature });
+    }
+    Ok(())
+}
+
+/// Checks everything but the plane; returns a power of two near the longest step between given neighbours.
+pub(super) fn check(curve: &Curve<'_>) -> Result<f64, CurveError> {
+    let given = curve.joints.len();
+    if given < 2 {
+        return Err(CurveError::TooFewJoints { given });
+    }
+    if curve.closed && given < 3 {
+        return Err(CurveError::ClosedTooFewJoints { given });
+    }
+    for (joint, data) in curve.joints.iter().enumerate() {
+        check_joint(joint, data)?;
+    }
+    let points =
+        || curve.joints.iter().enumerate().filter(|(_, joint)| joint.position.given != Given::FREE);
+    let Some((_, first)) = points().next() else { return Err(CurveError::NoPosition) };
+    if points().count() < 2 {
+        return Err(CurveError::NoPosition);
+    }
+    let mut extent = 0.0f64;
+    for (_, joint) in points() {
+        for (a, b) in joint.position.value.iter().zip(&first.position.value) {
+            extent = extent.max((a - b).abs());
+        }
+    }
+    // Neighbours, a free joint between them counting as none: free joints stand evenly between given ones.
+    let mut longest = 0.0f64;
+    let mut before: Option<(usize, [f64; 3])> = None;
+    let wrapped = points().next().filter(|_| curve.closed);
+    for (joint, data) in points().chain(wrapped) {
+        let here = data.position.value;
+        if let Some((previous, there)) = before {
+            let step = here.iter().zip(&there).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+            if !(step > COINCIDENT * extent) {
+                return Err(CurveError::CoincidentJoints { joint: previous, next: joint });
+            }
+            longest = longest.max(step);
+        }
+        before = Some((joint, here));
+    }
+    if !(1e-90..=1e90).contains(&longest) || !(extent <= 1e100) {
+        return Err(CurveError::SizeOutOfRange);
+    }
+    let (_, exponent) = libm::frexp(longest);
+    Ok(libm::scalbn(1.0, exponent))
+}

@@ -1,0 +1,96 @@
+//! Elements in the forms that other programs read: Bézier control points, one B-spline.
+
+use super::element::Element;
+use super::measure::{MeasureError, check};
+use nalgebra::Vector3;
+
+/// Neighbouring elements whose tangents differ by less than this angle (radians) are joined smoothly in a B-spline.
+const SMOOTH: f64 = 1e-9;
+
+/// Whether a chain goes on with the same tangent direction after an element.
+fn smooth_after(elements: &[Element], element: usize) -> bool {
+    let (Some(here), Some(next)) = (elements.get(element), elements.get(element + 1)) else { return false };
+    let (a, b) = (Vector3::from(here.rows[4]), Vector3::from(next.rows[1]));
+    let (a, b) = (a / a.amax(), b / b.amax());
+    let cross = a.cross(&b);
+    here.rows[5] == next.rows[0]
+        && a.dot(&b) > 0.0
+        && cross.dot(&cross) <= SMOOTH * SMOOTH * a.dot(&a) * b.dot(&b)
+}
+
+/// The numbers of control points and of knots of a chain's B-spline.
+pub fn bspline_len(elements: &[Element]) -> (usize, usize) {
+    let count = elements.len();
+    let smooth = (0..count.saturating_sub(1)).filter(|&element| smooth_after(elements, element)).count();
+    let controls = if count == 0 { 0 } else { 5 * count + 1 - smooth };
+    (controls, if count == 0 { 0 } else { controls + 6 })
+}
+
+/// The whole chain as one non-rational B-spline of degree 5, the same curve point by point.
+///
+/// The knots start at 0 and end at 1, six-fold each; an interior joint has a four-fold knot where the tangent is
+/// continuous (the spline is C1 there, and G2 if the chain is) and a five-fold one at a corner. The knot intervals
+/// follow the speeds of the elements, so that the spline's speed is continuous. A closed chain gives a spline whose
+/// ends meet. `controls` and `knots` receive what [`bspline_len`] says, `controls.len() + 6` knots to so many control
+/// points.
+///
+/// # Errors
+/// [`MeasureError::NoElements`], [`MeasureError::NotFinite`], [`MeasureError::Irregular`] where an element starts or
+/// ends without speed, [`MeasureError::TooShort`].
+pub fn bspline(
+    elements: &[Element],
+    controls: &mut [[f64; 3]],
+    knots: &mut [f64],
+) -> Result<(), MeasureError> {
+    check(elements)?;
+    let (control_count, knot_count) = bspline_len(elements);
+    for (needed, given) in [(control_count, controls.len()), (knot_count, knots.len())] {
+        if given < needed {
+            return Err(MeasureError::TooShort { needed, given });
+        }
+    }
+    let speed = |element: usize, row: usize| {
+        let vector = Vector3::from(elements[element].rows[row]);
+        let most = vector.amax();
+        if most > 0.0 {
+            let vector = vector / most;
+            Ok(most * libm::sqrt(vector.dot(&vector)))
+        } else {
+            Err(MeasureError::Irregular { element })
+        }
+    };
+    // The interval of an element relative to the first's: speed over interval is the same on both sides of a joint.
+    let mut interval = 1.0;
+    let mut total = 1.0;
+    for element in 1..elements.len() {
+        interval *= speed(element, 1)? / speed(element - 1, 4)?;
+        total += interval;
+    }
+    let mut control_at = 0;
+    let mut knot_at = 0;
+    let mut put_knots = |value: f64, times: usize| {
+        for _ in 0..times {
+            knots[knot_at] = value;
+            knot_at += 1;
+        }
+    };
+    put_knots(0.0, 6);
+    let (mut interval, mut sum) = (1.0, 0.0);
+    for (index, element) in elements.iter().enumerate() {
+        if index > 0 {
+            interval *= speed(index, 1)? / speed(index - 1, 4)?;
+        }
+        sum += interval;
+        let bezier = element.bezier();
+        let from = usize::from(index > 0);
+        let to = if smooth_after(elements, index) { 5 } else { 6 };
+        for point in &bezier[from..to] {
+            controls[control_at] = *point;
+            control_at += 1;
+        }
+        let last = index + 1 == elements.len();
+        let times = if last { 6 } else { 4 + to - 5 };
+        put_knots(if last { 1.0 } else { sum / total }, times);
+    }
+    Ok(())
+}

@@ -1,0 +1,187 @@
+//! What can be wrong with a curve's data or options. Nothing was computed when one of these comes back.
+
+use core::fmt;
+
+/// Which quantity of a joint, or which option, an error is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The joint's continuity.
+    Continuity,
+    /// The joint's position.
+    Position,
+    /// A tangent.
+    Tangent,
+    /// A curvature.
+    Curvature,
+}
+
+impl Part {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Continuity => "continuity",
+            Self::Position => "position",
+            Self::Tangent => "tangent",
+            Self::Curvature => "curvature",
+        }
+    }
+}
+
+/// An option of [`super::Options`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OptionName {
+    /// `functional`
+    Functional,
+    /// `elements_per_span`
+    ElementsPerSpan,
+    /// `quadrature_points`
+    QuadraturePoints,
+    /// `dimension`
+    Dimension,
+    /// `relative_decrease`
+    RelativeDecrease,
+}
+
+impl OptionName {
+    /// The option's name and what it may be.
+    const fn rule(self) -> &'static str {
+        match self {
+            Self::Functional => "functional: must be MVC (0) or MEC (1)",
+            Self::ElementsPerSpan => "elements_per_span: must be from 1 to 1024",
+            Self::QuadraturePoints => "quadrature_points: must be from 12 to 32",
+            Self::Dimension => {
+                "dimension: must be 0 (found from the data), 2 (the data must lie in a plane) or 3"
+            }
+            Self::RelativeDecrease => "relative_decrease: must be a number from 0 to below 1",
+        }
+    }
+}
+
+/// Why a curve cannot be computed. Joints are numbered from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveError {
+    /// An open curve needs two joints.
+    TooFewJoints {
+        /// How many there are.
+        given: usize,
+    },
+    /// A closed curve needs three joints.
+    ClosedTooFewJoints {
+        /// How many there are.
+        given: usize,
+    },
+    /// A number is NaN or infinite.
+    NotFinite {
+        /// The joint.
+        joint: usize,
+        /// Which of its quantities.
+        part: Part,
+    },
+    /// A status or continuity is none of the defined codes.
+    UnknownCode {
+        /// The joint.
+        joint: usize,
+        /// Which of its quantities.
+        part: Part,
+    },
+    /// Two neighbouring joints are at the same point, as far as the numbers tell.
+    CoincidentJoints {
+        /// The first of the two.
+        joint: usize,
+        /// The second.
+        next: usize,
+    },
+    /// A given tangent has no direction.
+    ZeroTangent {
+        /// The joint.
+        joint: usize,
+    },
+    /// A given curvature vector is not perpendicular to the given tangent (by more than 1e-6 of its length).
+    CurvatureNotPerpendicular {
+        /// The joint.
+        joint: usize,
+    },
+    /// A curvature is given where no tangent is, and the data do not tell to which side the curve runs.
+    CurvatureNeedsTangent {
+        /// The joint.
+        joint: usize,
+    },
+    /// The two sides of a joint differ in a quantity that its continuity makes common.
+    SidesDiffer {
+        /// The joint.
+        joint: usize,
+        /// Which quantity.
+        part: Part,
+    },
+    /// No joint has a position.
+    NoPosition,
+    /// The data are too large or too small for the arithmetic: lengths from 1e-90 to 1e90 are allowed.
+    SizeOutOfRange,
+    /// The data do not lie in a plane though the options ask for a planar curve.
+    NotPlanar,
+    /// An option has a value that it cannot have.
+    BadOption(OptionName),
+    /// The workspace is too short.
+    WorkspaceTooSmall {
+        /// The length that is needed, in `f64`s.
+        needed: usize,
+        /// The length that was given.
+        given: usize,
+    },
+    /// The slice for the resulting elements is too short.
+    ElementsTooShort {
+        /// The length that is needed, in elements.
+        needed: usize,
+        /// The length that was given.
+        given: usize,
+    },
+}
+
+impl fmt::Display for CurveError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::TooFewJoints { given } => {
+                write!(f, "a curve needs at least two joints; {given} given")
+            }
+            Self::ClosedTooFewJoints { given } => {
+                write!(f, "a closed curve needs at least three joints; {given} given")
+            }
+            Self::NotFinite { joint, part } => {
+                write!(f, "the {} of joint {joint} has a number that is NaN or infinite", part.name())
+            }
+            Self::UnknownCode { joint, part } => {
+                write!(f, "the {} of joint {joint} has a code that is not defined", part.name())
+            }
+            Self::CoincidentJoints { joint, next } => {
+                write!(f, "joints {joint} and {next} are at the same point; give each point once")
+            }
+            Self::ZeroTangent { joint } => {
+                write!(f, "the tangent of joint {joint} is the zero vector and has no direction")
+            }
+            Self::CurvatureNotPerpendicular { joint } => {
+                write!(f, "the curvature of joint {joint} is not perpendicular to its tangent")
+            }
+            Self::CurvatureNeedsTangent { joint } => {
+                write!(f, "joint {joint} has a curvature but the direction of the curve there is unknown; \
+                     give an initial tangent")
+            }
+            Self::SidesDiffer { joint, part } => {
+                write!(f, "the two sides of joint {joint} have different {} though its continuity makes it common",
+                    part.name())
+            }
+            Self::NoPosition => f.write_str("no joint has a position; give at least two"),
+            Self::SizeOutOfRange => {
+                f.write_str("the data are too large or too small: lengths must be from 1e-90 to 1e90")
+            }
+            Self::NotPlanar => f.write_str("a planar curve was asked for but the data do not lie in a plane"),
+            Self::BadOption(option) => write!(f, "option {}", option.rule()),
+            Self::WorkspaceTooSmall { needed, given } => {
+                write!(f, "the workspace needs {needed} doubles; {given} given")
+            }
+            Self::ElementsTooShort { needed, given } => {
+                write!(f, "the result needs room for {needed} elements; {given} given")
+            }
+        }
+    }
+}
+
+impl core::error::Error for CurveError {}

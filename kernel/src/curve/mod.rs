@@ -1,0 +1,53 @@
+//! Curves: from a designer's points, tangents and curvatures to quintic elements of least variation (thesis chapter 4).
+//!
+//! A [`Curve`] is a row of [`Joint`]s, at each of which position, tangent and curvature are fixed, given as start values
+//! or free. [`solve`] finds the piecewise quintic that meets them and minimises a [`Functional`]: the MVC, whose
+//! curvature changes as little as possible, or the MEC, which bends as little as possible. The result is a slice of
+//! [`Element`]s, plain data, which [`measure`] and [`convert`] read.
+//!
+//! Memory is the caller's, in three calls: [`workspace_len`] and [`elements_len`] say how much, the caller brings it,
+//! [`solve`] works in it.
+//!
+//! ```
+//! use minvar::curve::{Curve, Element, Joint, Options, Quantity, elements_len, solve, workspace_len};
+//! use minvar::solve::{Silent, Status};
+//!
+//! // Two points with opposite tangents: the curve of least variation is the half circle.
+//! let joints = [
+//!     Joint::at([-1.0, 0.0, 0.0]).with_tangent(Quantity::fixed([0.0, 1.0, 0.0])),
+//!     Joint::at([1.0, 0.0, 0.0]).with_tangent(Quantity::fixed([0.0, -1.0, 0.0])),
+//! ];
+//! let curve = Curve { joints: &joints, closed: false };
+//! let options = Options::DEFAULT;
+//!
+//! let mut workspace = [0.0; 512];
+//! assert!(workspace_len(&curve, &options)? <= workspace.len());
+//! let mut elements = [Element::ZERO; 1];
+//! assert_eq!(elements_len(&curve, &options), elements.len());
+//!
+//! let report = solve(&curve, &options, &mut workspace, &mut elements, &mut [], &mut Silent)?;
+//! assert_eq!(report.status, Status::Converged);
+//! assert!((report.length - core::f64::consts::PI).abs() < 1e-5);
+//! # Ok::<(), minvar::curve::CurveError>(())
+//! ```
+
+mod check;
+pub mod convert;
+mod element;
+mod error;
+pub(crate) mod fairness;
+mod joint;
+pub mod measure;
+mod model;
+mod options;
+mod placement;
+mod solve;
+mod start;
+
+pub use element::Element;
+pub use error::{CurveError, OptionName, Part};
+pub use fairness::Functional;
+pub use joint::{Continuity, Curve, Given, Joint, Quantity};
+pub use measure::{CurvePoint, MeasureError};
+pub use options::Options;
+pub use solve::{Report, elements_len, solve, workspace_len};

@@ -1,0 +1,279 @@
+//! From a designer's data to elements: the three calls *how much*, *here it is*, *solve*.
+
+use super::check::check;
+use super::element::Element;
+use super::error::CurveError;
+use super::fairness::{Dimension, Exterior};
+use super::joint::{Curve, Given};
+use super::measure;
+use super::model::Model;
+use super::options::Options;
+use super::placement::{Place, Placement};
+use super::start::Start;
+use crate::basis::quadrature;
+use crate::solve::{
+    self, Control, InOrder, Observer, Outcome, Problem, Record, Settings, Status, WorkspaceTooSmall,
+};
+
+/// How a curve came out. All figures in the caller's units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Report {
+    /// How the computation ended.
+    pub status: Status,
+    /// The number of iterations: trial steps, accepted or not.
+    pub iterations: usize,
+    /// How often an element was linearised (cost, gradient and Hessian), over all elements: the work that was done.
+    pub linearisations: usize,
+    /// The number of unknowns that the solver varied.
+    pub unknowns: usize,
+    /// Whether the curve was computed in a plane.
+    pub planar: bool,
+    /// The functional's value by the rule that was minimised with.
+    pub value: f64,
+    /// The functional's value of the resulting elements by a 32-point rule. Where it differs from `value` by more
+    /// than rounding, the curve is too wild for its elements: take more of them.
+    pub fine_value: f64,
+    /// The length `L`.
+    pub length: f64,
+    /// The variation of curvature `V = ∫ (dκ/ds)² ds`.
+    pub variation: f64,
+    /// The bending energy `E = ∫ κ² ds`.
+    pub bending: f64,
+    /// The largest component of the functional's gradient by the unknowns, each times the unknown's natural size,
+    /// as a fraction of the functional.
+    pub gradient: f64,
+    /// The decrease of the functional that another Newton step would promise; infinite where the Hessian is not
+    /// positive definite.
+    pub decrement: f64,
+}
+
+/// The number of elements that a curve has: `spans × elements_per_span`.
+pub const fn elements_len(curve: &Curve<'_>, options: &Options) -> usize {
+    curve.spans().saturating_mul(options.elements_per_span as usize)
+}
+
+/// The workspace, in `f64`s, that [`solve`] needs for these data. It depends on the number of joints, on what is
+/// fixed at them and on whether they lie in a plane, not on the numbers otherwise.
+///
+/// # Errors
+/// Everything that [`solve`] would find wrong with the data and options.
+pub fn workspace_len(curve: &Curve<'_>, options: &Options) -> Result<usize, CurveError> {
+    options.check()?;
+    let unit = check(curve)?;
+    Ok(match Place::of(curve, unit, options.dimension)? {
+        Place::Plane(_) => lens(&model::<2>(curve, options)).1,
+        Place::Space(_) => lens(&model::<3>(curve, options)).1,
+    })
+}
+
+/// Computes a curve (thesis chapter 4).
+///
+/// `workspace` needs [`workspace_len`] numbers in any condition, `elements` receives [`elements_len`] elements in
+/// order along the curve; more room is left untouched. `records` receives one record an iteration as far as it
+/// reaches. Fixed positions and tangent directions are kept exactly; planar data give elements exactly in their
+/// plane where that is parallel to a coordinate plane, else to rounding.
+///
+/// # Errors
+/// Whatever is wrong with data, options or memory, found before any work; `elements` is untouched then.
+pub fn solve(
+    curve: &Curve<'_>,
+    options: &Options,
+    workspace: &mut [f64],
+    elements: &mut [Element],
+    records: &mut [Record],
+    observer: &mut dyn Observer,
+) -> Result<Report, CurveError> {
+    options.check()?;
+    let unit = check(curve)?;
+    match Place::of(curve, unit, options.dimension)? {
+        Place::Plane(place) => run(curve, options, &place, workspace, elements, records, observer),
+        Place::Space(place) => run(curve, options, &place, workspace, elements, records, observer),
+    }
+}
+
+fn model<'a, const D: usize>(curve: &Curve<'a>, options: &Options) -> Model<'a, D> {
+    let points = options.quadrature_points as usize;
+    Model {
+        curve: *curve,
+        per_span: options.elements_per_span as usize,
+        functional: options.functional,
+        rule: quadrature::lobatto(points).unwrap_or(quadrature::FINEST),
+        gauge: 0.0,
+        guarded: false,
+        natural_cost: 0.0,
+        start_length: 0.0,
+    }
+}
+
+/// The lengths of the state and of the whole workspace.
+fn lens<const D: usize>(model: &Model<'_, D>) -> (usize, usize)
+where
+    Dimension<D>: Exterior<D>,
+{
+    let state = model.state_len();
+    (state, state + solve::workspace_len(model, 1))
+}
+
+fn run<const D: usize>(
+    curve: &Curve<'_>,
+    options: &Options,
+    place: &Placement<D>,
+    workspace: &mut [f64],
+    elements: &mut [Element],
+    records: &mut [Record],
+    observer: &mut dyn Observer,
+) -> Result<Report, CurveError>
+where
+    Dimension<D>: Exterior<D>,
+{
+    let mut model = model::<D>(curve, options);
+    let count = model.element_count();
+    let too_short = CurveError::ElementsTooShort { needed: count, given: elements.len() };
+    let elements = elements.get_mut(..count).ok_or(too_short)?;
+    let (state_len, needed) = lens(&model);
+    let given = workspace.len();
+    if given < needed {
+        return Err(CurveError::WorkspaceTooSmall { needed, given });
+    }
+    let (state, work) = workspace.split_at_mut(state_len);
+
+    model.natural_cost = Start { model: &model, place }.fill(state);
+    model.start_length = model.rough_length(state);
+    let scale = functional_scale(options, place.unit);
+    let mut passes = Passes { observer, records, scale, iterations: 0, linearisations: 0 };
+    let wrong = |short: WorkspaceTooSmall| CurveError::WorkspaceTooSmall { needed: state_len + short.needed, given };
+
+    // First the shape, with a parametrisation that is kept even: only the shape decides how far a step goes then, and
+    // what is left to the second pass lies in the right one of many shallow valleys.
+    let start_cost: f64 = (0..count).map(|element| model.cost(element, state)).sum();
+    model.guarded = start_cost.is_finite();
+    model.gauge = model.natural_cost.min(if start_cost > 0.0 { start_cost } else { f64::INFINITY }) / count as f64;
+    let settings = Settings { max_iterations: options.max_iterations as usize, ..Settings::DEFAULT };
+    let shaping = Settings { relative_decrease: SHAPING_DECREASE, ..settings };
+    let mut outcome = passes.minimise(&model, &shaping, state, work).map_err(wrong)?;
+    model.gauge = 0.0;
+    if !matches!(outcome.status, Status::Cancelled | Status::Unbounded) {
+        let finishing = Settings {
+            max_iterations: settings.max_iterations - passes.iterations.min(settings.max_iterations),
+            relative_decrease: options.relative_decrease,
+            relaxation: RELAXATION,
+            ..settings
+        };
+        outcome = passes.minimise(&model, &finishing, state, work).map_err(wrong)?;
+    }
+    outcome.iterations = passes.iterations;
+    outcome.linearisations = passes.linearisations;
+
+    for (index, element) in elements.iter_mut().enumerate() {
+        *element = world_element(&model, place, index, state);
+    }
+    Ok(report(&model, place, &outcome, elements, options))
+}
+
+/// What a functional's value in the local system is multiplied by to be in the caller's.
+fn functional_scale(options: &Options, unit: f64) -> f64 {
+    if options.functional.scale_power() == 1 { 1.0 / unit } else { 1.0 / unit / unit / unit }
+}
+
+/// The first pass ends when a step promises to lower the functional by less than this fraction.
+const SHAPING_DECREASE: f64 = 1e-3;
+/// Steps of each element by itself between two of the whole curve.
+const RELAXATION: usize = 10;
+
+/// Runs one minimisation after the other as one to the caller: iterations numbered through, values in the caller's
+/// units.
+struct Passes<'a> {
+    observer: &'a mut dyn Observer,
+    records: &'a mut [Record],
+    scale: f64,
+    iterations: usize,
+    linearisations: usize,
+}
+
+impl Passes<'_> {
+    fn minimise<const D: usize>(
+        &mut self,
+        model: &Model<'_, D>,
+        settings: &Settings,
+        state: &mut [f64],
+        work: &mut [f64],
+    ) -> Result<Outcome, WorkspaceTooSmall>
+    where
+        Dimension<D>: Exterior<D>,
+    {
+        let outcome = solve::minimise(model, settings, &InOrder, state, work, &mut [], self)?;
+        self.iterations += outcome.iterations;
+        self.linearisations += outcome.linearisations;
+        Ok(outcome)
+    }
+}
+
+impl Observer for Passes<'_> {
+    fn iteration(&mut self, number: usize, record: &Record) -> Control {
+        let record = Record {
+            value: record.value * self.scale,
+            predicted: record.predicted * self.scale,
+            actual: record.actual * self.scale,
+            gradient: record.gradient * self.scale,
+            ..*record
+        };
+        let number = self.iterations + number;
+        if let Some(slot) = self.records.get_mut(number - 1) {
+            *slot = record;
+        }
+        self.observer.iteration(number, &record)
+    }
+}
+
+/// An element in the caller's system, fixed positions to the last bit.
+fn world_element<const D: usize>(
+    model: &Model<'_, D>,
+    place: &Placement<D>,
+    index: usize,
+    state: &[f64],
+) -> Element
+where
+    Dimension<D>: Exterior<D>,
+{
+    let local = model.rows(index, state);
+    let mut rows = [[0.0; 3]; 6];
+    for (a, row) in rows.iter_mut().enumerate() {
+        *row = if a == 0 || a == 5 { place.world_point(&local[a]) } else { place.world_vector(&local[a]) };
+    }
+    for (end, row) in [0, 5].into_iter().enumerate() {
+        if let Some(joint) = model.joint(model.node(index, end))
+            && joint.position.given == Given::FIXED
+        {
+            rows[row] = joint.position.value;
+        }
+    }
+    Element { rows }
+}
+
+fn report<const D: usize>(
+    model: &Model<'_, D>,
+    place: &Placement<D>,
+    outcome: &Outcome,
+    elements: &[Element],
+    options: &Options,
+) -> Report
+where
+    Dimension<D>: Exterior<D>,
+{
+    let scale = functional_scale(options, place.unit);
+    let (variation, bending) = (measure::variation(elements), measure::bending(elements));
+    Report {
+        status: outcome.status,
+        iterations: outcome.iterations,
+        linearisations: outcome.linearisations,
+        unknowns: (0..model.blocks()).map(|block| model.dofs(block)).sum(),
+        planar: D == 2,
+        value: outcome.value * scale,
+        fine_value: if options.functional.scale_power() == 1 { bending } else { variation },
+        length: measure::length(elements),
+        variation,
+        bending,
+        gradient: outcome.gradient / outcome.value.max(f64::MIN_POSITIVE),
+        decrement: outcome.decrement * scale,
+    }
+}

@@ -1,0 +1,347 @@
+//! Start values (thesis 4.9): whatever the designer left free gets a value near the solution.
+//!
+//! Tangents and curvatures at joints between two others are those of the circle through the three points: with
+//! `A = a/|a|²` and `B = b/|b|²` the inverted steps to the neighbours, its tangent is along `B − A`, which is (4.10),
+//! and its curvature vector is twice the foot of the perpendicular on the line from `A` to `B`. Free ends mirror
+//! their neighbour. Speeds and stretches are those of the quintic that fits a circular arc best; the thesis starts
+//! with the chord and 0, from where twice as many iterations are needed.
+
+use super::fairness::{Dimension, Exterior};
+use super::joint::{Continuity, Given, Joint};
+use super::model::{End, Model, orthonormalise};
+use super::placement::Placement;
+use crate::basis::hermite;
+use nalgebra::SVector;
+
+/// The speed at the ends of the quintic of least variation on an arc of turning `θ` is the arc's length times
+/// `1 + 0.00613 θ²`, and its stretch is `∓ 0.0377 θ²` times the speed (fitted to `θ = π/2` and `π`).
+const SPEED_BY_TURN: f64 = 0.00613;
+const STRETCH_BY_TURN: f64 = 0.0377;
+/// Turnings are not trusted beyond this.
+const MOST_TURN: f64 = 4.0;
+
+/// Any unit vector perpendicular to a unit vector: in the plane the one to the left.
+fn perpendicular<const D: usize>(t: &SVector<f64, D>) -> SVector<f64, D> {
+    let mut out = SVector::<f64, D>::zeros();
+    if D == 2 {
+        out[0] = -t[1];
+        out[1] = t[0];
+        return out;
+    }
+    let least = (0..D).fold(0, |least, d| if t[d].abs() < t[least].abs() { d } else { least });
+    out[least] = 1.0;
+    unit(&(out - t * t[least])).unwrap_or(out)
+}
+
+fn unit<const D: usize>(v: &SVector<f64, D>) -> Option<SVector<f64, D>> {
+    let square = v.dot(v);
+    (square > 0.0).then(|| v / libm::sqrt(square))
+}
+
+/// Turns a vector perpendicular to the unit vector `from` as `from` turns into `to` on the shortest way.
+fn carry<const D: usize>(
+    x: &SVector<f64, D>,
+    from: &SVector<f64, D>,
+    to: &SVector<f64, D>,
+) -> SVector<f64, D> {
+    let cosine = from.dot(to);
+    if cosine < -1.0 + 1e-9 {
+        // Half a turn: in the plane the normal goes over into its opposite; in space the way is arbitrary.
+        return -x;
+    }
+    x - (from + to) * (x.dot(to) / (1.0 + cosine))
+}
+
+/// A frame whose first row is the tangent; in space the second is along the curvature, if there is any.
+fn frame_of<const D: usize>(
+    tangent: &SVector<f64, D>,
+    curvature: &SVector<f64, D>,
+) -> [SVector<f64, D>; D] {
+    let mut frame = [*tangent; D];
+    let normal = if D == 2 { None } else { unit(curvature) };
+    frame[1] = normal.unwrap_or_else(|| perpendicular(tangent));
+    if D == 3 {
+        let [t, n] = [*tangent, frame[1]];
+        frame[2] = SVector::from_fn(|d, _| {
+            t[(d + 1) % D] * n[(d + 2) % D] - t[(d + 2) % D] * n[(d + 1) % D]
+        });
+    }
+    orthonormalise(&mut frame);
+    frame
+}
+
+pub(super) struct Start<'m, 'a, const D: usize> {
+    pub(super) model: &'m Model<'a, D>,
+    pub(super) place: &'m Placement<D>,
+}
+
+/// How a tangent gets its start value.
+#[derive(PartialEq)]
+enum Rule {
+    Given,
+    /// The circle through three joints.
+    Circle,
+    /// Mirrored from the other end of the span.
+    Mirror,
+}
+
+impl<const D: usize> Start<'_, '_, D>
+where
+    Dimension<D>: Exterior<D>,
+{
+    fn joints(&self) -> &[Joint] {
+        self.model.curve.joints
+    }
+
+    /// The next joint (`side` 1) or the one before (`side` 0), if there is one.
+    fn neighbour(&self, joint: usize, side: usize) -> Option<usize> {
+        let count = self.joints().len();
+        match side {
+            1 if joint + 1 < count => Some(joint + 1),
+            1 if self.model.curve.closed => Some(0),
+            0 if joint > 0 => Some(joint - 1),
+            0 if self.model.curve.closed => Some(count - 1),
+            _ => None,
+        }
+    }
+
+    fn point_at(joint: usize, per_span: usize, state: &[f64]) -> SVector<f64, D> {
+        let at = Model::<D>::point_place(joint * per_span);
+        SVector::from_fn(|d, _| state[at + d])
+    }
+
+    fn point(&self, joint: usize, state: &[f64]) -> SVector<f64, D> {
+        Self::point_at(joint, self.model.per_span, state)
+    }
+
+    /// The inverted steps `A`, `B` to the two neighbours.
+    fn inverted(&self, joint: usize, state: &[f64]) -> Option<[SVector<f64, D>; 2]> {
+        let here = self.point(joint, state);
+        let step = |side| {
+            let step = self.point(self.neighbour(joint, side)?, state) - here;
+            Some(step / step.dot(&step))
+        };
+        Some([step(0)?, step(1)?])
+    }
+
+    fn rule(&self, joint: usize, side: usize) -> Rule {
+        let data = &self.joints()[joint];
+        if data.tangent[side].given != Given::FREE {
+            Rule::Given
+        } else if data.continuity != Continuity::G0
+            && self.neighbour(joint, 0).is_some()
+            && self.neighbour(joint, 1).is_some()
+        {
+            Rule::Circle
+        } else {
+            Rule::Mirror
+        }
+    }
+
+    /// Positions: given ones, and free ones evenly between the given neighbours.
+    fn points(&self, state: &mut [f64]) {
+        let (count, per_span) = (self.joints().len(), self.model.per_span);
+        let given = |joint: usize| self.joints()[joint].position.given != Given::FREE;
+        let put = |state: &mut [f64], joint: usize, point: &SVector<f64, D>| {
+            let at = Model::<D>::point_place(joint * per_span);
+            state[at..at + D].copy_from_slice(point.as_slice());
+        };
+        for (joint, data) in self.joints().iter().enumerate() {
+            if given(joint) {
+                put(state, joint, &self.place.local_point(&data.position.value));
+            }
+        }
+        // Runs of free joints between given ones, around the ring where the curve is closed.
+        let Some(first) = (0..count).find(|&joint| given(joint)) else { return };
+        let last = (0..count).rev().find(|&joint| given(joint)).unwrap_or(first);
+        let mut before = first;
+        let laps = if self.model.curve.closed { first + count } else { last };
+        for at in first + 1..=laps {
+            if !given(at % count) {
+                continue;
+            }
+            let (a, b) = (self.point(before % count, state), self.point(at % count, state));
+            for between in before + 1..at {
+                let share = (between - before) as f64 / (at - before) as f64;
+                put(state, between % count, &(a + (b - a) * share));
+            }
+            before = at;
+        }
+        if !self.model.curve.closed {
+            // Free ends go on straight in even steps.
+            if let Some(second) = (first + 1..count).find(|&joint| given(joint)) {
+                let step = (self.point(first, state) - self.point(second, state)) / (second - first) as f64;
+                for joint in 0..first {
+                    put(state, joint, &(self.point(first, state) + step * (first - joint) as f64));
+                }
+            }
+            if let Some(second) = (0..last).rev().find(|&joint| given(joint)) {
+                let step = (self.point(last, state) - self.point(second, state)) / (last - second) as f64;
+                for joint in last + 1..count {
+                    put(state, joint, &(self.point(last, state) + step * (joint - last) as f64));
+                }
+            }
+        }
+    }
+
+    fn tangent(&self, joint: usize, side: usize, state: &[f64]) -> SVector<f64, D> {
+        let data = &self.joints()[joint];
+        let here = self.point(joint, state);
+        let found = match self.rule(joint, side) {
+            Rule::Given => return self.place.local_direction(&data.tangent[side].value),
+            Rule::Circle => self.inverted(joint, state).map(|[a, b]| {
+                unit(&(b - a)).unwrap_or_else(|| perpendicular(&unit(&a).unwrap_or_else(SVector::zeros)))
+            }),
+            Rule::Mirror => self.neighbour(joint, side).map(|other| {
+                let step = self.point(other, state) - here;
+                let chord = unit(&if side == 1 { step } else { -step }).unwrap_or_else(SVector::zeros);
+                if self.rule(other, 1 - side) == Rule::Mirror {
+                    chord
+                } else {
+                    let there = self.tangent(other, 1 - side, state);
+                    chord * (2.0 * there.dot(&chord)) - there
+                }
+            }),
+        };
+        let found = found.unwrap_or_else(SVector::zeros);
+        let curvature = &data.curvature[side];
+        if curvature.given != Given::FREE {
+            // A given curvature without a tangent: the tangent is perpendicular to it.
+            let across = self.place.local_curvature(&curvature.value);
+            if let Some(across) = unit(&across) {
+                return unit(&(found - across * found.dot(&across))).unwrap_or(found);
+            }
+        }
+        found
+    }
+
+    fn curvature(&self, joint: usize, side: usize, tangent: &SVector<f64, D>, state: &[f64]) -> SVector<f64, D> {
+        let data = &self.joints()[joint];
+        let given = &data.curvature[side];
+        if given.given != Given::FREE {
+            let vector = self.place.local_curvature(&given.value);
+            let size = libm::sqrt(vector.dot(&vector));
+            return unit(&(vector - tangent * vector.dot(tangent))).map_or(vector, |across| across * size);
+        }
+        if data.continuity == Continuity::G2
+            && let Some([a, b]) = self.inverted(joint, state)
+            && let Some(along) = unit(&(b - a))
+        {
+            return carry(&((a - along * a.dot(&along)) * 2.0), &along, tangent);
+        }
+        let side = if self.neighbour(joint, side).is_some() { side } else { 1 - side };
+        let Some(other) = self.neighbour(joint, side) else { return SVector::zeros() };
+        if self.joints()[joint].continuity == Continuity::G2
+            && self.joints()[other].continuity == Continuity::G2
+            && let Some([a, b]) = self.inverted(other, state)
+            && let Some(along) = unit(&(b - a))
+        {
+            // The thesis's end rule: the neighbour's curvature.
+            return carry(&((a - along * a.dot(&along)) * 2.0), &along, tangent);
+        }
+        // The circle that touches the tangent here and passes through the other joint.
+        let chord = self.point(other, state) - self.point(joint, state);
+        (chord - tangent * chord.dot(tangent)) * (2.0 / chord.dot(&chord))
+    }
+
+    fn end(&self, joint: usize, side: usize, state: &[f64]) -> End<D> {
+        let tangent = self.tangent(joint, side, state);
+        let curvature = self.curvature(joint, side, &tangent, state);
+        // At a G1 joint both sides share the frame: it must not depend on the side's curvature.
+        let shared = self.joints()[joint].continuity == Continuity::G1;
+        let frame = frame_of(&tangent, &if shared { SVector::zeros() } else { curvature });
+        let mut components = [0.0; D];
+        for j in 1..D {
+            components[j - 1] = frame[j].dot(&curvature);
+        }
+        End { point: self.point(joint, state), frame, curvature: components, speed: 1.0, stretch: 0.0 }
+    }
+
+    /// Fills the state, and returns the sum of `1/length^power` over the elements: the natural cost.
+    pub(super) fn fill(&self, state: &mut [f64]) -> f64 {
+        state.fill(0.0);
+        self.points(state);
+        let model = self.model;
+        let (spans, per_span, count) = (model.curve.spans(), model.per_span, self.joints().len());
+        let mut natural = 0.0;
+        for span in 0..spans {
+            let mut ends = [self.end(span, 1, state), self.end((span + 1) % count, 0, state)];
+            set_speeds(&mut ends);
+            let rows = {
+                let [p0, v0, a0] = ends[0].rows();
+                let [p1, v1, a1] = ends[1].rows();
+                [p0, v0, a0, a1, v1, p1]
+            };
+            let parts = per_span as f64;
+            for end in &mut ends {
+                end.speed /= parts;
+                end.stretch /= parts * parts;
+            }
+            let mut before = ends[0];
+            for part in 0..per_span {
+                let element = span * per_span + part;
+                let after = if part + 1 == per_span {
+                    ends[1]
+                } else {
+                    cut(&rows, (part + 1) as f64 / parts, parts, &before)
+                };
+                model.set_end(element, 0, &before, state);
+                model.set_end(element, 1, &after, state);
+                let length = 0.5 * (before.speed + after.speed);
+                natural += match model.functional.scale_power() {
+                    1 => 1.0 / length,
+                    _ => 1.0 / (length * length * length),
+                };
+                before = after;
+            }
+        }
+        natural
+    }
+}
+
+/// The end that a span's start curve has at an interior parameter, for elements that are `1/parts` of it.
+fn cut<const D: usize>(rows: &[SVector<f64, D>; 6], t: f64, parts: f64, before: &End<D>) -> End<D>
+where
+    Dimension<D>: Exterior<D>,
+{
+    let basis = hermite::basis(t);
+    let [point, first, second]: [SVector<f64, D>; 3] = core::array::from_fn(|k| {
+        let mut sum = SVector::zeros();
+        for a in 0..6 {
+            sum += rows[a] * basis[k][a];
+        }
+        sum
+    });
+    let speed = libm::sqrt(first.dot(&first));
+    let tangent = unit(&first).unwrap_or(before.frame[0]);
+    let along = second.dot(&tangent);
+    let curvature = (second - tangent * along) / (speed * speed).max(f64::MIN_POSITIVE);
+    let frame = frame_of(&tangent, &curvature);
+    let mut components = [0.0; D];
+    for j in 1..D {
+        components[j - 1] = frame[j].dot(&curvature);
+    }
+    End { point, frame, curvature: components, speed: speed / parts, stretch: along / (parts * parts) }
+}
+
+/// Speeds and stretches of a span from the turning of its tangents against the chord.
+fn set_speeds<const D: usize>(ends: &mut [End<D>; 2])
+where
+    Dimension<D>: Exterior<D>,
+{
+    let chord = ends[1].point - ends[0].point;
+    let size = libm::sqrt(chord.dot(&chord));
+    let angle = |t: &SVector<f64, D>| {
+        let wedge = Dimension::<D>::wedge(&chord, t);
+        let across = libm::sqrt(wedge[0] * wedge[0] + wedge[1] * wedge[1] + wedge[2] * wedge[2]);
+        libm::atan2(across, chord.dot(t))
+    };
+    let turn = (angle(&ends[0].frame[0]) + angle(&ends[1].frame[0])).min(MOST_TURN);
+    let half = 0.5 * turn;
+    let length = if half > 1e-4 { size * half / libm::sin(half) } else { size };
+    let speed = length * (1.0 + SPEED_BY_TURN * turn * turn);
+    for (end, sign) in ends.iter_mut().zip([-1.0, 1.0]) {
+        end.speed = speed;
+        end.stretch = sign * STRETCH_BY_TURN * turn * turn * speed;
+    }
+}

@@ -1,0 +1,164 @@
+//! A symmetric matrix stored by the envelope of its lower triangle, and its Cholesky factor.
+//!
+//! Row `r` keeps its entries from its first column that may be non-zero to the diagonal. The factor of a positive
+//! definite matrix fills nothing outside the envelope.
+
+use super::workspace::Indices;
+
+/// The shape of an envelope: where each row starts and at which column.
+pub(super) struct Envelope<'a, 'w> {
+    pub(super) first: &'a Indices<'w>,
+    pub(super) start: &'a Indices<'w>,
+}
+
+/// Where a factorisation stopped: the matrix is not positive definite.
+pub(super) struct Indefinite {
+    /// The row whose pivot is not positive.
+    pub(super) row: usize,
+    /// That pivot, 0 or negative, or not a number.
+    pub(super) pivot: f64,
+}
+
+/// How well a pivot is known, as a fraction of its matrix entry.
+const PIVOT_ROUNDING: f64 = 1e-14;
+/// How well a pivot is known, as a fraction of the matrix's norm.
+const NORM_ROUNDING: f64 = 1e-16;
+/// The pivot of a direction without effect.
+const IMMOVABLE: f64 = 1e100;
+
+impl Envelope<'_, '_> {
+    pub(super) fn rows(&self) -> usize {
+        self.first.len()
+    }
+
+    /// Row `r` as its first column and its range in the stored entries.
+    #[inline]
+    fn row(&self, r: usize) -> (usize, core::ops::Range<usize>) {
+        let (first, start) = (self.first.get(r), self.start.get(r));
+        (first, start..start + (r - first) + 1)
+    }
+
+    /// Adds to the entry in row `r`, column `c`, `c <= r`.
+    #[inline]
+    pub(super) fn add(&self, matrix: &mut [f64], r: usize, c: usize, value: f64) {
+        let at = self.start.get(r) + c - self.first.get(r);
+        matrix[at] += value;
+    }
+
+    /// The largest absolute row sum: a bound on the matrix's eigenvalues (Gershgorin). `sums` is scratch.
+    pub(super) fn norm(&self, matrix: &[f64], sums: &mut [f64]) -> f64 {
+        sums.fill(0.0);
+        for r in 0..self.rows() {
+            let (first, range) = self.row(r);
+            let mut own = 0.0;
+            for (c, value) in (first..).zip(&matrix[range]) {
+                own += value.abs();
+                if c < r {
+                    sums[c] += value.abs();
+                }
+            }
+            sums[r] += own;
+        }
+        sums.iter().fold(0.0, |most, &sum| most.max(sum))
+    }
+
+    /// The product `out = matrix · vector`.
+    pub(super) fn multiply(&self, matrix: &[f64], vector: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        for r in 0..self.rows() {
+            let (first, range) = self.row(r);
+            let mut sum = 0.0;
+            for (c, value) in (first..).zip(&matrix[range]) {
+                sum += value * vector[c];
+                if c < r {
+                    out[c] += value * vector[r];
+                }
+            }
+            out[r] += sum;
+        }
+    }
+
+    /// Factors `matrix + shift · I` into `factor`, row by row.
+    ///
+    /// A pivot that is nothing but rounding, by what was subtracted to get it and by `norm`, the size of the whole
+    /// matrix, belongs to a direction in which nothing changes (the parametrisation of a straight span, a motion of
+    /// the whole shape). It is made so large that a solution has no part along it.
+    pub(super) fn factor(
+        &self,
+        matrix: &[f64],
+        norm: f64,
+        shift: f64,
+        factor: &mut [f64],
+    ) -> Result<(), Indefinite> {
+        for r in 0..self.rows() {
+            let (first, range) = self.row(r);
+            let (done, rest) = factor.split_at_mut(range.start);
+            let row = &mut rest[..r - first + 1];
+            row.copy_from_slice(&matrix[range]);
+            for c in first..r {
+                let (c_first, c_range) = self.row(c);
+                let other = &done[c_range];
+                let from = first.max(c_first);
+                let sum: f64 = dot(&row[from - first..c - first], &other[from - c_first..c - c_first]);
+                row[c - first] = (row[c - first] - sum) / other[c - c_first];
+            }
+            let (entries, diagonal) = row.split_at_mut(r - first);
+            let pivot = diagonal[0] + shift - dot(entries, entries);
+            let noise = PIVOT_ROUNDING * diagonal[0].abs() + NORM_ROUNDING * norm;
+            diagonal[0] = if pivot > noise {
+                libm::sqrt(pivot)
+            } else if pivot >= -noise {
+                entries.fill(0.0);
+                IMMOVABLE
+            } else {
+                return Err(Indefinite { row: r, pivot });
+            };
+        }
+        Ok(())
+    }
+
+    /// Solves `L y = x` in place.
+    pub(super) fn forward(&self, factor: &[f64], x: &mut [f64]) {
+        for r in 0..self.rows() {
+            let (first, range) = self.row(r);
+            let row = &factor[range];
+            let sum = dot(&row[..r - first], &x[first..r]);
+            x[r] = (x[r] - sum) / row[r - first];
+        }
+    }
+
+    /// Solves `Lᵀ y = x` in place, over the first `rows` rows.
+    pub(super) fn backward(&self, factor: &[f64], x: &mut [f64], rows: usize) {
+        for r in (0..rows).rev() {
+            let (first, range) = self.row(r);
+            let row = &factor[range];
+            let value = x[r] / row[r - first];
+            x[r] = value;
+            for (entry, target) in row[..r - first].iter().zip(&mut x[first..r]) {
+                *target -= entry * value;
+            }
+        }
+    }
+
+    /// A direction of negative curvature of the matrix whose factorisation stopped: solves `L₁₁ᵀ v = −l` for the
+    /// rows before the bad pivot; `vᵀ (matrix + shift) v` is the pivot.
+    pub(super) fn negative_direction(&self, factor: &[f64], failure: &Indefinite, v: &mut [f64]) {
+        v.fill(0.0);
+        let (first, range) = self.row(failure.row);
+        for (c, entry) in (first..failure.row).zip(&factor[range]) {
+            v[c] = -entry;
+        }
+        self.backward(factor, v, failure.row);
+        v[failure.row] = 1.0;
+    }
+}
+
+/// The inner product, summed in order.
+#[inline]
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for (x, y) in a.iter().zip(b) {
+        sum += x * y;
+    }
+    sum
+}

@@ -1,0 +1,334 @@
+//! The iteration: linearise, step, try, accept or refuse, until nothing can be gained.
+
+use super::envelope::Envelope;
+use super::executor::Executor;
+use super::ordering::order_blocks;
+use super::problem::{BlockList, Problem, packed, packed_len};
+use super::relax;
+use super::report::{Control, Observer, Outcome, Record, Status};
+use super::trust_region::{self, Vectors};
+use super::workspace::{Indices, Layout, Workspace, WorkspaceTooSmall};
+
+/// How to iterate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// The largest number of trial steps.
+    pub max_iterations: usize,
+    /// Converged when a step promises to lower the functional by less than this fraction of it, or when 20 iterations
+    /// together lowered it by less than a thousand times that. Rounding is the floor: a smaller tolerance, 0
+    /// included, asks for as much as the arithmetic gives.
+    pub relative_decrease: f64,
+    /// How many steps each element may take in the blocks that it shares with none, after every step of the whole; 0
+    /// for none.
+    pub relaxation: usize,
+    /// The first radius of the trust region, in natural sizes an element.
+    pub first_radius: f64,
+}
+
+impl Settings {
+    /// 200 iterations, to rounding.
+    pub const DEFAULT: Self = Self { max_iterations: 200, relative_decrease: 0.0, relaxation: 0, first_radius: 1.0 };
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+/// How well costs are known, in units of rounding.
+const ROUNDING_SAFETY: f64 = 16.0;
+
+/// The smallest decrease of a cost that means anything: the cost is a sum of squares of residuals that carry
+/// rounding errors proportional to their natural size.
+fn noise(value: f64, natural: f64) -> f64 {
+    let unit = ROUNDING_SAFETY * f64::EPSILON;
+    unit * libm::sqrt(value * natural) + unit * unit * natural + f64::EPSILON * value
+}
+
+/// Minimises a problem from `state`, which holds the best state found when this returns. Memory: at least
+/// [`super::workspace_len`] numbers, in any condition. `records` receives one record an iteration as far as it
+/// reaches.
+///
+/// # Errors
+/// [`WorkspaceTooSmall`] before any work.
+pub fn minimise<P: Problem + ?Sized>(
+    problem: &P,
+    settings: &Settings,
+    executor: &dyn Executor,
+    state: &mut [f64],
+    workspace: &mut [f64],
+    records: &mut [Record],
+    observer: &mut dyn Observer,
+) -> Result<Outcome, WorkspaceTooSmall> {
+    let layout = Layout::of(problem, executor.width());
+    let given = workspace.len();
+    let mut work = layout.carve(workspace)?;
+    let entries = order_blocks(problem, &mut work);
+    if entries > layout.envelope {
+        return Err(WorkspaceTooSmall { needed: layout.len() + 2 * (entries - layout.envelope), given });
+    }
+    let mut run = Run { problem, executor, work, relaxation: settings.relaxation, linearisations: 0 };
+    Ok(run.iterate(settings, state, records, observer))
+}
+
+/// Steps that are taken after the tolerance was met while Newton's method converges quadratically: they cost little and
+/// bring the gradient down to rounding.
+const POLISH: usize = 2;
+/// Converged as well when this many iterations together lowered the functional by less than so many tolerances.
+const WINDOW: usize = 20;
+const WINDOW_DECREASE: f64 = 1e3;
+/// Costs below this part of what is natural for the problem's size count as zero.
+const ZERO_COST: f64 = 1e-3;
+
+/// How many steps every element takes from each of its starts.
+const EXPLORATION: usize = 15;
+
+/// The blocks of an element and the number of its local unknowns.
+fn local_unknowns<P: Problem + ?Sized>(problem: &P, element: usize) -> (BlockList, usize) {
+    let mut list = BlockList::new();
+    problem.element_blocks(element, &mut list);
+    let local = list.iter().map(|&block| problem.dofs(block)).sum();
+    (list, local)
+}
+
+/// Moves the state `from` by a scaled step into `to`. `unscaled` is scratch.
+fn move_by<P: Problem + ?Sized>(
+    problem: &P,
+    offset: &Indices<'_>,
+    sizes: &[f64],
+    step: &[f64],
+    unscaled: &mut [f64],
+    from: &[f64],
+    to: &mut [f64],
+) {
+    for ((out, s), size) in unscaled.iter_mut().zip(step).zip(sizes) {
+        *out = s * size;
+    }
+    to.copy_from_slice(from);
+    for block in 0..problem.blocks() {
+        let dofs = problem.dofs(block);
+        if dofs > 0 {
+            let (range, at) = (problem.state_range(block), offset.get(block));
+            problem.retract(block, &from[range.clone()], &unscaled[at..at + dofs], &mut to[range]);
+        }
+    }
+}
+
+struct Run<'a, P: ?Sized> {
+    problem: &'a P,
+    executor: &'a dyn Executor,
+    work: Workspace<'a>,
+    relaxation: usize,
+    linearisations: usize,
+}
+
+impl<P: Problem + ?Sized> Run<'_, P> {
+    fn iterate(
+        &mut self,
+        settings: &Settings,
+        state: &mut [f64],
+        records: &mut [Record],
+        observer: &mut dyn Observer,
+    ) -> Outcome {
+        let natural = self.problem.natural_cost();
+        if self.relaxation > 0 {
+            self.linearisations += relax::explore(self.problem, &mut self.work, EXPLORATION, state);
+        }
+        let mut value = self.linearise(state);
+        let mut outcome = Outcome {
+            status: Status::Stalled,
+            iterations: 0,
+            linearisations: 0,
+            value,
+            gradient: f64::INFINITY,
+            decrement: f64::INFINITY,
+        };
+        if !value.is_finite() {
+            return outcome;
+        }
+        let root = libm::sqrt(self.problem.elements().max(1) as f64);
+        let mut radius = settings.first_radius * root;
+        let least_radius = 1e-9 * root;
+        let mut shift = 0.0;
+        let mut polish = POLISH;
+        let mut past = [f64::INFINITY; WINDOW];
+        loop {
+            let gradient = self.work.gradient.iter().fold(0.0f64, |most, g| most.max(g.abs()));
+            let floor = noise(value, natural);
+            outcome = Outcome { value, gradient, linearisations: self.linearisations, ..outcome };
+            let step = {
+                let Workspace { row_first, row_start, matrix, factor, gradient, step, scratch, direction, .. } =
+                    &mut self.work;
+                let envelope = Envelope { first: row_first, start: row_start };
+                let mut vectors = Vectors { gradient, step, scratch, direction, factor };
+                trust_region::solve(&envelope, matrix, &mut vectors, radius, shift)
+            };
+            let Some(step) = step else {
+                outcome.status = Status::Stalled;
+                return outcome;
+            };
+            if step.shift == 0.0 {
+                outcome.decrement = step.predicted;
+            } else {
+                outcome.decrement = f64::INFINITY;
+            }
+            // A cost far below what is natural for the size is zero to the user, however it goes on relatively.
+            let little = settings.relative_decrease * (value + ZERO_COST * natural);
+            if step.predicted <= floor.max(little) {
+                if step.predicted <= floor || step.shift > 0.0 || polish == 0 {
+                    // A ball that shrank to nothing proves nothing; otherwise there is nothing left to gain.
+                    let whole = step.shift == 0.0 || radius > 1e3 * least_radius;
+                    outcome.status = if whole { Status::Converged } else { Status::Stalled };
+                    return outcome;
+                }
+                polish -= 1;
+            }
+            // The bottom of a valley that falls ever so slightly: nothing that a user could see goes on changing.
+            let slot = outcome.iterations % WINDOW;
+            if past[slot] - value <= WINDOW_DECREASE * settings.relative_decrease * value {
+                outcome.status = Status::Converged;
+                return outcome;
+            }
+            past[slot] = value;
+            if outcome.iterations >= settings.max_iterations {
+                outcome.status = Status::IterationLimit;
+                return outcome;
+            }
+            shift = step.shift;
+
+            let tried = self.try_step(state, 1e-3 * step.predicted / self.problem.elements() as f64);
+            let actual = value - tried;
+            let slack = if step.predicted <= 1e3 * floor { floor } else { 0.0 };
+            let ratio = (actual + slack) / (step.predicted + slack);
+            let accepted = tried.is_finite() && ratio > 1e-4;
+            if !tried.is_finite() || ratio < 0.25 {
+                radius = 0.25 * step.length;
+            } else if ratio > 0.75 && step.length > 0.8 * radius {
+                radius = 2.5 * step.length;
+            }
+            outcome.iterations += 1;
+            let record = Record {
+                value: if accepted { tried } else { value },
+                predicted: step.predicted,
+                actual,
+                gradient,
+                step: step.length,
+                shift: step.shift,
+            };
+            if let Some(slot) = records.get_mut(outcome.iterations - 1) {
+                *slot = record;
+            }
+            let control = observer.iteration(outcome.iterations, &record);
+            if accepted {
+                state.copy_from_slice(self.work.trial);
+                value = self.linearise(state);
+                outcome.value = value;
+            }
+            if control == Control::Cancel {
+                outcome.status = Status::Cancelled;
+                return outcome;
+            }
+            if accepted && self.problem.runs_away(state) {
+                outcome.status = Status::Unbounded;
+                return outcome;
+            }
+            if radius < least_radius {
+                outcome.status = Status::Stalled;
+                return outcome;
+            }
+        }
+    }
+
+    /// Takes the step into the trial state and relaxes it there; returns the cost.
+    fn try_step(&mut self, state: &[f64], enough: f64) -> f64 {
+        let Workspace { trial, step, sizes, offset, scratch, .. } = &mut self.work;
+        move_by(self.problem, offset, sizes, step, scratch, state, trial);
+        if self.relaxation > 0 {
+            self.linearisations += relax::relax(self.problem, &mut self.work, self.relaxation, enough);
+        }
+        self.cost()
+    }
+
+    /// The cost of the trial state; infinite outside the domain.
+    fn cost(&mut self) -> f64 {
+        let (problem, elements, width) = (self.problem, self.problem.elements(), self.executor.width().max(1));
+        let Workspace { trial, slots, .. } = &mut self.work;
+        let trial = &**trial;
+        let mut sum = 0.0;
+        let mut first = 0;
+        while first < elements {
+            let count = width.min(elements - first);
+            let slots = &mut slots[..count];
+            self.executor.run(slots, 1, &|index, slot| {
+                slot.fill(problem.cost(first + index, trial));
+            });
+            for &cost in slots.iter() {
+                if !cost.is_finite() {
+                    return f64::INFINITY;
+                }
+                sum += cost;
+            }
+            first += count;
+        }
+        sum
+    }
+
+    /// Assembles gradient and Hessian at a state, scaled by natural sizes; returns the cost.
+    fn linearise(&mut self, state: &[f64]) -> f64 {
+        let (problem, elements, width) = (self.problem, self.problem.elements(), self.executor.width().max(1));
+        let Workspace { row_first, row_start, matrix, gradient, sizes, offset, slots, slot_len, .. } = &mut self.work;
+        let envelope = Envelope { first: row_first, start: row_start };
+        for block in 0..problem.blocks() {
+            let (from, dofs) = (offset.get(block), problem.dofs(block));
+            if dofs > 0 {
+                problem.natural_sizes(block, state, &mut sizes[from..from + dofs]);
+            }
+        }
+        gradient.fill(0.0);
+        matrix.fill(0.0);
+        self.linearisations += elements;
+        let mut sum = 0.0;
+        let mut first = 0;
+        while first < elements {
+            let count = width.min(elements - first);
+            let slots = &mut slots[..count * *slot_len];
+            self.executor.run(slots, *slot_len, &|index, slot| {
+                let (_, local) = local_unknowns(problem, first + index);
+                slot.fill(0.0);
+                let (cost, rest) = slot.split_at_mut(1);
+                let (gradient, matrix) = rest.split_at_mut(local);
+                cost[0] =
+                    problem.linearise(first + index, state, gradient, &mut matrix[..packed_len(local)]);
+            });
+            for (index, slot) in slots.chunks_exact(*slot_len).enumerate() {
+                let (list, local) = local_unknowns(problem, first + index);
+                let (cost, rest) = slot.split_at(1);
+                let (local_gradient, local_matrix) = rest.split_at(local);
+                sum += cost[0];
+                let mut i = 0;
+                for &row_block in &list {
+                    let row_from = offset.get(row_block);
+                    for row in row_from..row_from + problem.dofs(row_block) {
+                        gradient[row] += local_gradient[i] * sizes[row];
+                        let mut j = 0;
+                        'columns: for &column_block in &list {
+                            let column_from = offset.get(column_block);
+                            for column in column_from..column_from + problem.dofs(column_block) {
+                                if j > i {
+                                    break 'columns;
+                                }
+                                let entry = local_matrix[packed(i, j)] * sizes[row] * sizes[column];
+                                envelope.add(matrix, row.max(column), row.min(column), entry);
+                                j += 1;
+                            }
+                        }
+                        i += 1;
+                    }
+                }
+            }
+            first += count;
+        }
+        sum
+    }
+}

@@ -1,0 +1,98 @@
+//! What a problem tells the solver.
+
+use core::ops::Range;
+
+/// The largest number of blocks that one element may touch.
+pub const MAX_ELEMENT_BLOCKS: usize = 32;
+
+/// The blocks that an element touches, in the order in which its local unknowns are numbered.
+pub type BlockList = heapless::Vec<usize, MAX_ELEMENT_BLOCKS>;
+
+/// The place of entry (`row`, `column`), `column <= row`, in a packed lower triangle.
+#[inline]
+pub const fn packed(row: usize, column: usize) -> usize {
+    row * (row + 1) / 2 + column
+}
+
+/// The length of a packed lower triangle of `n` rows.
+pub const fn packed_len(n: usize) -> usize {
+    n * (n + 1) / 2
+}
+
+/// A sum of elements to be minimised over blocks of unknowns that live on manifolds.
+///
+/// The *state* is one slice of numbers in which every block owns a range, in whatever redundant form suits it (a
+/// unit vector, a frame). Steps are taken in each block's tangent space, whose dimension is its number of *dofs*;
+/// a block without dofs is fixed. An element's *local unknowns* are the dofs of the blocks it touches, in the
+/// order of [`Problem::element_blocks`].
+///
+/// The counts must not change during a solve.
+pub trait Problem: Sync {
+    /// The number of blocks.
+    fn blocks(&self) -> usize;
+
+    /// The number of dofs of a block; 0 where it is fixed.
+    fn dofs(&self, block: usize) -> usize;
+
+    /// Where a block's numbers stand in the state.
+    fn state_range(&self, block: usize) -> Range<usize>;
+
+    /// The length of the state.
+    fn state_len(&self) -> usize;
+
+    /// The number of elements.
+    fn elements(&self) -> usize;
+
+    /// Appends the blocks that an element touches, each once.
+    fn element_blocks(&self, element: usize, blocks: &mut BlockList);
+
+    /// The largest number of local unknowns of any element.
+    fn max_element_dofs(&self) -> usize;
+
+    /// A bound on the number of entries of the ordered matrix's envelope, known before any ordering: the caller
+    /// sizes memory with it. The default holds for every problem.
+    fn envelope_bound(&self) -> usize {
+        let n: usize = (0..self.blocks()).map(|block| self.dofs(block)).sum();
+        packed_len(n)
+    }
+
+    /// The cost of an element. A value that is not finite means that the state is outside the problem's domain:
+    /// the solver then shortens its step.
+    fn cost(&self, element: usize, state: &[f64]) -> f64;
+
+    /// The cost of an element with its derivatives in the tangent spaces of its blocks: `gradient[i]` by the
+    /// local unknown `i`, and the second derivatives into the packed lower triangle `matrix` (see [`packed`]).
+    ///
+    /// The matrix is the exact Hessian of the cost along [`Problem::retract`], or a positive semidefinite part
+    /// of it where residuals are small. Both slices come filled with zeros and have exactly the element's size.
+    fn linearise(&self, element: usize, state: &[f64], gradient: &mut [f64], matrix: &mut [f64]) -> f64;
+
+    /// Moves a block from `from` by `step` in its tangent space. `from` and `to` are the block's own ranges.
+    fn retract(&self, block: usize, from: &[f64], step: &[f64], to: &mut [f64]);
+
+    /// How many other starts an element has for the unknowns that it shares with none, beside the one it stands at.
+    /// Where those have several minima, the solver tries all once and goes on from the best.
+    fn variants(&self) -> usize {
+        0
+    }
+
+    /// Changes an element's own unknowns in the state to its start `variant` (0 …), seen from where they stand.
+    fn vary(&self, element: usize, variant: usize, state: &mut [f64]) {
+        let _ = (element, variant, state);
+    }
+
+    /// The natural size of each dof of a block at a state, all positive: a step of this size changes the shape
+    /// noticeably. They make the unknowns comparable (lengths, angles, curvatures) and the solver indifferent to
+    /// the caller's unit.
+    fn natural_sizes(&self, block: usize, state: &[f64], sizes: &mut [f64]);
+
+    /// A cost that is natural for this problem's size (one length unit's worth of everything): costs are known no
+    /// better than rounding times this.
+    fn natural_cost(&self) -> f64;
+
+    /// Whether a state shows that the minimum runs away to infinity.
+    fn runs_away(&self, state: &[f64]) -> bool {
+        let _ = state;
+        false
+    }
+}

@@ -1,0 +1,147 @@
+//! The step of a trust region: the minimum of the quadratic model in a ball (Moré and Sorensen 1983).
+//!
+//! Unknowns are scaled to natural sizes, so the ball is round. The minimum solves `(H + shift·I) s = −g` with the
+//! least `shift ≥ 0` that makes the matrix positive definite and the step no longer than the radius; `shift` is
+//! found by Newton's method on `1/radius − 1/|s|`, safeguarded by bounds.
+
+use super::envelope::{Envelope, dot};
+
+/// The step that was found.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Step {
+    /// The shift of the Hessian; 0 for a pure Newton step inside the ball.
+    pub(super) shift: f64,
+    /// The step's length.
+    pub(super) length: f64,
+    /// The decrease that the model promises.
+    pub(super) predicted: f64,
+}
+
+/// The vectors that a step needs.
+pub(super) struct Vectors<'a> {
+    pub(super) gradient: &'a [f64],
+    /// Where the step goes.
+    pub(super) step: &'a mut [f64],
+    pub(super) scratch: &'a mut [f64],
+    pub(super) direction: &'a mut [f64],
+    pub(super) factor: &'a mut [f64],
+}
+
+/// How near to the radius a step on the boundary must be.
+const RADIUS_TOLERANCE: f64 = 0.1;
+/// More factorisations than the safeguarded iteration ever needs.
+const MOST_FACTORISATIONS: usize = 100;
+
+pub(super) fn solve(
+    envelope: &Envelope<'_, '_>,
+    matrix: &[f64],
+    vectors: &mut Vectors<'_>,
+    radius: f64,
+    last_shift: f64,
+) -> Option<Step> {
+    let Vectors { gradient, step, scratch, direction, factor } = vectors;
+    let norm = envelope.norm(matrix, scratch);
+    let gradient_length = libm::sqrt(dot(gradient, gradient));
+    let (mut low, mut high) = (0.0f64, gradient_length / radius + norm);
+    if !high.is_finite() {
+        return None;
+    }
+    let mut shift = 0.0;
+    let mut have_direction = false;
+    let mut best: Option<Step> = None;
+    for _ in 0..MOST_FACTORISATIONS {
+        match envelope.factor(matrix, norm, shift, factor) {
+            Err(failure) => {
+                envelope.negative_direction(factor, &failure, direction);
+                let square = dot(direction, direction);
+                low = low.max(shift);
+                if failure.pivot.is_finite() && square.is_finite() {
+                    low = low.max(shift - failure.pivot / square);
+                    have_direction = true;
+                }
+                high = high.max(low * 1.01 + 1e-300);
+                shift = between(low, high, last_shift);
+            }
+            Ok(()) => {
+                for (s, g) in step.iter_mut().zip(gradient.iter()) {
+                    *s = -g;
+                }
+                envelope.forward(factor, step);
+                envelope.backward(factor, step, envelope.rows());
+                let square = dot(step, step);
+                let length = libm::sqrt(square);
+                let predicted = 0.5 * (shift * square - dot(gradient, step));
+                let found = Step { shift, length, predicted };
+                if (shift == 0.0 && length <= radius) || (length - radius).abs() <= RADIUS_TOLERANCE * radius {
+                    return Some(found);
+                }
+                if length < radius {
+                    high = shift;
+                    if have_direction && high - low <= 1e-3 * high.max(f64::MIN_POSITIVE) {
+                        return Some(to_boundary(envelope, matrix, vectors, radius, found));
+                    }
+                } else {
+                    low = low.max(shift);
+                }
+                best = Some(found);
+                scratch.copy_from_slice(step);
+                envelope.forward(factor, scratch);
+                let slope = dot(scratch, scratch);
+                let newton = shift + (square / slope) * ((length - radius) / radius);
+                shift = if newton > low && newton < high { newton } else { between(low, high, 0.0) };
+                if !(high - low > 1e-14 * high) {
+                    break;
+                }
+            }
+        }
+    }
+    // The interval closed: the last step that a factorisation gave is shortened to the ball where it is too long.
+    let found = best?;
+    envelope.factor(matrix, norm, found.shift, factor).ok()?;
+    for (s, g) in step.iter_mut().zip(gradient.iter()) {
+        *s = -g;
+    }
+    envelope.forward(factor, step);
+    envelope.backward(factor, step, envelope.rows());
+    if found.length > radius {
+        let shrink = radius / found.length;
+        step.iter_mut().for_each(|s| *s *= shrink);
+        envelope.multiply(matrix, step, scratch);
+        let predicted = -dot(gradient, step) - 0.5 * dot(step, scratch);
+        return Some(Step { length: radius, predicted, ..found });
+    }
+    Some(found)
+}
+
+/// A shift strictly inside the interval: the last iteration's where that lies inside, else the geometric mean,
+/// kept off the lower end.
+fn between(low: f64, high: f64, wanted: f64) -> f64 {
+    if wanted > low && wanted < high {
+        return wanted;
+    }
+    libm::sqrt(low * high).max(low + 0.01 * (high - low))
+}
+
+/// The hard case: the gradient has no part along the direction of negative curvature, so the shifted step stays
+/// inside the ball. Goes on along that direction to the boundary.
+fn to_boundary(
+    envelope: &Envelope<'_, '_>,
+    matrix: &[f64],
+    vectors: &mut Vectors<'_>,
+    radius: f64,
+    found: Step,
+) -> Step {
+    let Vectors { gradient, step, scratch, direction, .. } = vectors;
+    let size = libm::sqrt(dot(direction, direction));
+    let downhill = if dot(gradient, direction) > 0.0 { -1.0 } else { 1.0 };
+    direction.iter_mut().for_each(|z| *z *= downhill / size);
+    let along = dot(step, direction);
+    let missing = radius * radius - found.length * found.length;
+    let reach = -along + libm::sqrt(along * along + missing);
+    for (s, z) in step.iter_mut().zip(direction.iter()) {
+        *s += reach * z;
+    }
+    envelope.multiply(matrix, step, scratch);
+    let predicted = -dot(gradient, step) - 0.5 * dot(step, scratch);
+    Step { length: radius, predicted, ..found }
+}

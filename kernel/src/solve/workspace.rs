@@ -1,0 +1,204 @@
+//! The memory of a solve: one layout function that sizes it and carves it.
+
+use super::problem::{Problem, packed_len};
+
+/// The workspace was shorter than the solve needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WorkspaceTooSmall {
+    /// The length that is needed.
+    pub needed: usize,
+    /// The length that was given.
+    pub given: usize,
+}
+
+/// Where everything stands; all lengths in `f64`s.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layout {
+    pub(super) unknowns: usize,
+    pub(super) blocks: usize,
+    pub(super) incidences: usize,
+    pub(super) envelope: usize,
+    pub(super) state: usize,
+    pub(super) slot: usize,
+    pub(super) slots: usize,
+    pub(super) local: usize,
+}
+
+impl Layout {
+    pub(super) fn of<P: Problem + ?Sized>(problem: &P, width: usize) -> Self {
+        let blocks = problem.blocks();
+        let mut incidences = 0;
+        for element in 0..problem.elements() {
+            let mut list = super::BlockList::new();
+            problem.element_blocks(element, &mut list);
+            incidences += list.len();
+        }
+        let local = problem.max_element_dofs();
+        Self {
+            unknowns: (0..blocks).map(|block| problem.dofs(block)).sum(),
+            blocks,
+            incidences,
+            envelope: problem.envelope_bound(),
+            state: problem.state_len(),
+            slot: 1 + local + packed_len(local),
+            slots: width.max(1),
+            local,
+        }
+    }
+
+    /// The lengths of the parts, in the order in which [`Layout::carve`] hands them out.
+    fn parts(&self) -> [usize; 22] {
+        let Self { unknowns: n, blocks, incidences, envelope, state, slot, slots, local } = *self;
+        [
+            blocks,     // order
+            blocks,     // offset
+            blocks + 1, // incidence starts
+            incidences, // incident elements
+            blocks,     // degree
+            blocks,     // level or scratch
+            n,          // row first
+            n,          // row start
+            envelope,   // matrix
+            envelope,   // factor
+            n,          // gradient
+            n,          // step
+            n,          // scratch vector
+            n,          // natural sizes
+            n,          // direction of negative curvature
+            state,      // trial state
+            state,      // scratch state
+            state,      // best state of several
+            slot * slots,
+            local,      // rows of a dense local matrix: first
+            local,      // rows of a dense local matrix: start
+            packed_len(local) * 2 + 5 * local,
+        ]
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.parts().iter().sum()
+    }
+
+    pub(super) fn carve<'a>(&self, memory: &'a mut [f64]) -> Result<Workspace<'a>, WorkspaceTooSmall> {
+        let (needed, given) = (self.len(), memory.len());
+        if given < needed {
+            return Err(WorkspaceTooSmall { needed, given });
+        }
+        let mut rest = memory;
+        let parts = self.parts().map(|len| {
+            let (part, tail) = core::mem::take(&mut rest).split_at_mut(len);
+            rest = tail;
+            part
+        });
+        let [
+            order,
+            offset,
+            starts,
+            incident,
+            degree,
+            level,
+            row_first,
+            row_start,
+            matrix,
+            factor,
+            gradient,
+            step,
+            scratch,
+            sizes,
+            direction,
+            trial,
+            spare,
+            best,
+            slots,
+            local_first,
+            local_start,
+            local,
+        ] = parts;
+        Ok(Workspace {
+            order: Indices(order),
+            offset: Indices(offset),
+            starts: Indices(starts),
+            incident: Indices(incident),
+            degree: Indices(degree),
+            level: Indices(level),
+            row_first: Indices(row_first),
+            row_start: Indices(row_start),
+            matrix,
+            factor,
+            gradient,
+            step,
+            scratch,
+            sizes,
+            direction,
+            trial,
+            spare,
+            best,
+            slots,
+            local_first: Indices(local_first),
+            local_start: Indices(local_start),
+            local,
+            slot_len: self.slot,
+        })
+    }
+}
+
+/// The parts of a carved workspace.
+pub(super) struct Workspace<'a> {
+    pub(super) order: Indices<'a>,
+    pub(super) offset: Indices<'a>,
+    pub(super) starts: Indices<'a>,
+    pub(super) incident: Indices<'a>,
+    pub(super) degree: Indices<'a>,
+    pub(super) level: Indices<'a>,
+    pub(super) row_first: Indices<'a>,
+    pub(super) row_start: Indices<'a>,
+    pub(super) matrix: &'a mut [f64],
+    pub(super) factor: &'a mut [f64],
+    pub(super) gradient: &'a mut [f64],
+    pub(super) step: &'a mut [f64],
+    pub(super) scratch: &'a mut [f64],
+    pub(super) sizes: &'a mut [f64],
+    pub(super) direction: &'a mut [f64],
+    pub(super) trial: &'a mut [f64],
+    pub(super) spare: &'a mut [f64],
+    pub(super) best: &'a mut [f64],
+    pub(super) slots: &'a mut [f64],
+    pub(super) local_first: Indices<'a>,
+    pub(super) local_start: Indices<'a>,
+    pub(super) local: &'a mut [f64],
+    pub(super) slot_len: usize,
+}
+
+/// Small whole numbers kept in a slice of `f64`, so that a caller hands over one kind of memory. Exact up to 2^53.
+pub(super) struct Indices<'a>(&'a mut [f64]);
+
+impl Indices<'_> {
+    #[inline]
+    pub(super) fn get(&self, at: usize) -> usize {
+        self.0[at] as usize
+    }
+
+    #[inline]
+    pub(super) fn set(&mut self, at: usize, value: usize) {
+        self.0[at] = value as f64;
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// The first `len` of them.
+    pub(super) fn head(&mut self, len: usize) -> Indices<'_> {
+        Indices(&mut self.0[..len])
+    }
+
+    pub(super) fn fill(&mut self, value: usize) {
+        self.0.fill(value as f64);
+    }
+}
+
+/// The length of the workspace, in `f64`s, that [`super::minimise`] needs for a problem with an executor of the
+/// given width (1 for [`super::InOrder`]).
+pub fn workspace_len<P: Problem + ?Sized>(problem: &P, width: usize) -> usize {
+    Layout::of(problem, width).len()
+}
