@@ -51,7 +51,8 @@ fn check_joint(joint: usize, data: &Joint) -> Result<(), CurveError> {
         }
     }
     let differ = |sides: &[Quantity; 2]| {
-        sides[0].given != sides[1].given || (sides[0].given != Given::FREE && sides[0].value != sides[1].value)
+        sides[0].given != sides[1].given
+            || (sides[0].given != Given::FREE && sides[0].value != sides[1].value)
     };
     if data.continuity != Continuity::G0 && differ(&data.tangent) {
         return Err(CurveError::SidesDiffer { joint, part: Part::Tangent });
@@ -74,8 +75,7 @@ pub(super) fn check(curve: &Curve<'_>) -> Result<f64, CurveError> {
     for (joint, data) in curve.joints.iter().enumerate() {
         check_joint(joint, data)?;
     }
-    let points =
-        || curve.joints.iter().enumerate().filter(|(_, joint)| joint.position.given != Given::FREE);
+    let points = || curve.joints.iter().enumerate().filter(|(_, joint)| joint.position.given != Given::FREE);
     let Some((_, first)) = points().next() else { return Err(CurveError::NoPosition) };
     if points().count() < 2 {
         return Err(CurveError::NoPosition);

@@ -161,12 +161,18 @@ impl fmt::Display for CurveError {
                 write!(f, "the curvature of joint {joint} is not perpendicular to its tangent")
             }
             Self::CurvatureNeedsTangent { joint } => {
-                write!(f, "joint {joint} has a curvature but the direction of the curve there is unknown; \
-                     give an initial tangent")
+                write!(
+                    f,
+                    "joint {joint} has a curvature but the direction of the curve there is unknown; \
+                     give an initial tangent"
+                )
             }
             Self::SidesDiffer { joint, part } => {
-                write!(f, "the two sides of joint {joint} have different {} though its continuity makes it common",
-                    part.name())
+                write!(
+                    f,
+                    "the two sides of joint {joint} have different {} though its continuity makes it common",
+                    part.name()
+                )
             }
             Self::NoPosition => f.write_str("no joint has a position; give at least two"),
             Self::SizeOutOfRange => {

@@ -230,8 +230,8 @@ pub(crate) fn add_evenness<const D: usize>(weight: f64, d: &[SVector<f64, D>; 3]
     let r = q / p;
     let (by1, by2) = (d2 / p - d1 * (2.0 * r / p), d1 / p);
     let identity = SMatrix::<f64, D, D>::identity();
-    let second11 =
-        identity * (-2.0 * r / p) - symmetric(d1, d2) * (2.0 / (p * p)) + d1 * d1.transpose() * (8.0 * r / (p * p));
+    let second11 = identity * (-2.0 * r / p) - symmetric(d1, d2) * (2.0 / (p * p))
+        + d1 * d1.transpose() * (8.0 * r / (p * p));
     let second21 = identity / p - d1 * d1.transpose() * (2.0 / (p * p));
     let twice = 2.0 * weight;
     to.value += weight * r * r;
@@ -288,8 +288,11 @@ mod tests {
                     for l in 0..3 {
                         for j in 0..D {
                             let second = (up.gradient[l][j] - down.gradient[l][j]) / (2.0 * h);
-                            let exact =
-                                if k >= l { found.hessian[k][l][(i, j)] } else { found.hessian[l][k][(j, i)] };
+                            let exact = if k >= l {
+                                found.hessian[k][l][(i, j)]
+                            } else {
+                                found.hessian[l][k][(j, i)]
+                            };
                             assert!(
                                 (second - exact).abs() < 1e-6 * scale,
                                 "hessian {k}{i} {l}{j}: {second} {exact}"

@@ -15,7 +15,7 @@ use crate::basis::bernstein::Bernstein;
 use crate::basis::hermite;
 use crate::basis::quadrature::FINEST;
 use core::fmt;
-use nalgebra::{SVector, Vector3};
+use nalgebra::Vector3;
 
 /// Why a chain cannot be measured. Elements are numbered from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -225,24 +225,45 @@ pub fn length(elements: &[Element]) -> f64 {
     sum
 }
 
+/// The two halves of an element.
+fn halves(rows: &[Vector3<f64>; 6]) -> [[Vector3<f64>; 6]; 2] {
+    let basis = hermite::basis(0.5);
+    let middle: [Vector3<f64>; 3] = core::array::from_fn(|k| {
+        let mut sum = Vector3::zeros();
+        for a in 0..6 {
+            sum += rows[a] * basis[k][a];
+        }
+        sum
+    });
+    // A half's parameter runs half as fast: C' halves, C'' is quartered.
+    let half =
+        |p0, v0, a0, a1, v1, p1| -> [Vector3<f64>; 6] { [p0, v0 * 0.5, a0 * 0.25, a1 * 0.25, v1 * 0.5, p1] };
+    let [p, v, a] = middle;
+    [half(rows[0], rows[1], rows[2], a, v, p), half(p, v, a, rows[3], rows[4], rows[5])]
+}
+
 fn total(functional: Functional, elements: &[Element]) -> f64 {
     let mut sum = 0.0;
     for element in elements {
         let (rows, unit) = normalised(element);
-        let rows: [SVector<f64, 3>; 6] = rows;
-        let value = row_cost::<3>(functional, &FINEST, &rows);
+        // Each half by itself: finer than any rule that a curve is minimised with.
+        let mut value = 0.0;
+        for half in halves(&rows) {
+            value += row_cost::<3>(functional, &FINEST, &half);
+        }
         sum += if functional.scale_power() == 1 { value / unit } else { value / unit / unit / unit };
     }
     sum
 }
 
 /// The variation of curvature `V = ∫ |dκ/ds|² ds` of a chain, with `κ` the binormal curvature vector (thesis 4.2), by
-/// 32-point Gauss–Lobatto; 1/length³. What happens between elements (a jump of curvature at a G1 joint) does not count.
+/// 32-point Gauss–Lobatto over each half of every element; 1/length³. What happens between elements (a jump of curvature at a G1 joint) does not count.
 pub fn variation(elements: &[Element]) -> f64 {
     total(Functional::MVC, elements)
 }
 
-/// The bending energy `E = ∫ κ² ds` of a chain (thesis 4.1), by 32-point Gauss–Lobatto; 1/length.
+/// The bending energy `E = ∫ κ² ds` of a chain (thesis 4.1), by 32-point Gauss–Lobatto over each half of every
+/// element; 1/length.
 pub fn bending(elements: &[Element]) -> f64 {
     total(Functional::MEC, elements)
 }

@@ -1,12 +1,12 @@
 //! Curves: from a designer's points, tangents and curvatures to quintic elements of least variation (thesis chapter 4).
 //!
 //! A [`Curve`] is a row of [`Joint`]s, at each of which position, tangent and curvature are fixed, given as start values
-//! or free. [`solve`] finds the piecewise quintic that meets them and minimises a [`Functional`]: the MVC, whose
+//! or free. [`solve()`] finds the piecewise quintic that meets them and minimises a [`Functional`]: the MVC, whose
 //! curvature changes as little as possible, or the MEC, which bends as little as possible. The result is a slice of
 //! [`Element`]s, plain data, which [`measure`] and [`convert`] read.
 //!
 //! Memory is the caller's, in three calls: [`workspace_len`] and [`elements_len`] say how much, the caller brings it,
-//! [`solve`] works in it.
+//! [`solve()`] works in it.
 //!
 //! ```
 //! use minvar::curve::{Curve, Element, Joint, Options, Quantity, elements_len, solve, workspace_len};

@@ -135,7 +135,7 @@ impl<const D: usize> Model<'_, D> {
 
     /// The joint at a node, if there is one.
     pub(super) fn joint(&self, node: usize) -> Option<&Joint> {
-        if node % self.per_span == 0 { self.curve.joints.get(node / self.per_span) } else { None }
+        if node.is_multiple_of(self.per_span) { self.curve.joints.get(node / self.per_span) } else { None }
     }
 
     fn node_start(node: usize) -> usize {
@@ -302,7 +302,11 @@ fn derivatives<const D: usize>(rows: &[SVector<f64, D>; 6], basis: &[[f64; 6]; 4
 }
 
 /// The functional of an element by its Hermite rows.
-pub(super) fn row_cost<const D: usize>(functional: Functional, rule: &Rule, rows: &[SVector<f64, D>; 6]) -> f64
+pub(super) fn row_cost<const D: usize>(
+    functional: Functional,
+    rule: &Rule,
+    rows: &[SVector<f64, D>; 6],
+) -> f64
 where
     Dimension<D>: Exterior<D>,
 {
@@ -329,11 +333,8 @@ fn row_derivatives<const D: usize>(
 where
     Dimension<D>: Exterior<D>,
 {
-    let mut sum = RowDerivatives {
-        cost: 0.0,
-        gradient: [SVector::zeros(); 6],
-        hessian: [[SMatrix::zeros(); 6]; 6],
-    };
+    let mut sum =
+        RowDerivatives { cost: 0.0, gradient: [SVector::zeros(); 6], hessian: [[SMatrix::zeros(); 6]; 6] };
     for (t, weight) in rule.iter() {
         let basis = hermite::basis(t);
         let d = derivatives(rows, &basis);
@@ -343,8 +344,7 @@ where
         }
         sum.cost += weight * at.value;
         // The full block h[k][l] for any k, l.
-        let block =
-            |k: usize, l: usize| if k >= l { at.hessian[k][l] } else { at.hessian[l][k].transpose() };
+        let block = |k: usize, l: usize| if k >= l { at.hessian[k][l] } else { at.hessian[l][k].transpose() };
         for b in 0..6 {
             let column: [SMatrix<f64, D, D>; 3] = core::array::from_fn(|k| {
                 (block(k, 0) * basis[1][b] + block(k, 1) * basis[2][b] + block(k, 2) * basis[3][b]) * weight
@@ -383,9 +383,7 @@ impl<const D: usize> End<D> {
                 [zero, normal * speed, bend]
             }
             Coordinate::Curvature(j) => [zero, zero, self.frame[j + 1] * (speed * speed)],
-            Coordinate::Turn => {
-                [zero, zero, self.turned() * (speed * speed)]
-            }
+            Coordinate::Turn => [zero, zero, self.turned() * (speed * speed)],
             Coordinate::Speed => [zero, tangent, self.curvature_vector() * (2.0 * speed)],
             Coordinate::Stretch => [zero, zero, tangent],
         }
@@ -432,6 +430,29 @@ impl<const D: usize> End<D> {
             (Turn, Turn) => -speed * speed * second.dot(&self.curvature_vector()),
             _ => 0.0,
         }
+    }
+}
+
+impl<const D: usize> Model<'_, D>
+where
+    Dimension<D>: Exterior<D>,
+{
+    /// What an element costs by its rows; infinite outside the domain.
+    pub(super) fn cost_of_rows(&self, rows: &[SVector<f64, D>; 6]) -> f64 {
+        let mut sum = 0.0;
+        let mut before: Option<SVector<f64, D>> = None;
+        for (t, weight) in self.rule.iter() {
+            let d = derivatives(rows, &hermite::basis(t));
+            if self.guarded && before.is_some_and(|before| !(before.dot(&d[0]) > 0.0)) {
+                return f64::INFINITY;
+            }
+            before = Some(d[0]);
+            sum += weight * density(self.functional, &d);
+            if self.gauge > 0.0 {
+                sum += weight * self.gauge * evenness(&d);
+            }
+        }
+        sum
     }
 }
 
@@ -499,21 +520,7 @@ where
         if !ends.iter().all(|end| end.speed > 0.0) {
             return f64::INFINITY;
         }
-        let rows = self.rows(element, state);
-        let mut sum = 0.0;
-        let mut before: Option<SVector<f64, D>> = None;
-        for (t, weight) in self.rule.iter() {
-            let d = derivatives(&rows, &hermite::basis(t));
-            if self.guarded && before.is_some_and(|before| !(before.dot(&d[0]) > 0.0)) {
-                return f64::INFINITY;
-            }
-            before = Some(d[0]);
-            sum += weight * density(self.functional, &d);
-            if self.gauge > 0.0 {
-                sum += weight * self.gauge * evenness(&d);
-            }
-        }
-        sum
+        self.cost_of_rows(&self.rows(element, state))
     }
 
     fn linearise(&self, element: usize, state: &[f64], gradient: &mut [f64], matrix: &mut [f64]) -> f64 {
@@ -597,20 +604,20 @@ where
     }
 
     fn variants(&self) -> usize {
-        if self.gauge > 0.0 || self.per_span > 1 { 0 } else { 2 }
+        if self.gauge > 0.0 || self.per_span > 3 { 0 } else { SKEWS.len() }
     }
 
     fn vary(&self, element: usize, variant: usize, state: &mut [f64]) {
-        // A quintic fits most shapes about as well when it runs through them faster at one end: its minima differ in
-        // this skew.
-        let skew = if variant == 0 { SKEW } else { -SKEW };
+        // A quintic fits most shapes about as well when it runs through them faster at one end or at the other: its
+        // minima differ in this skew. They are looked for from either side of an even speed.
+        let skew = SKEWS[variant];
         let at = self.element_start(element);
         let faster = libm::exp(skew);
-        let [first, second] = [state[at], state[at + 2]];
-        state[at] = first * faster;
-        state[at + 1] = (state[at + 1] - 2.0 * skew * first) * faster;
-        state[at + 2] = second / faster;
-        state[at + 3] = (state[at + 3] - 2.0 * skew * second) / faster;
+        let even = 0.5 * (state[at] + state[at + 2]);
+        state[at] = even * faster;
+        state[at + 1] = -2.0 * skew * even * faster;
+        state[at + 2] = even / faster;
+        state[at + 3] = -2.0 * skew * even / faster;
     }
 
     fn natural_sizes(&self, block: usize, state: &[f64], sizes: &mut [f64]) {
@@ -652,10 +659,10 @@ where
     }
 }
 
-/// The logarithm of the speed ratio between an element's end and its middle in the starts that are tried.
-const SKEW: f64 = 0.15;
+/// The logarithms of the speed ratio between an element's first end and its middle in the starts that are tried.
+const SKEWS: [f64; 2] = [0.15, -0.15];
 /// A curve that became longer than its start by this factor grows without limit.
-const RUNAWAY: f64 = 1e4;
+const RUNAWAY: f64 = 100.0;
 
 /// A step of what a side holds: its tangent and its curvature components.
 #[derive(Clone, Copy)]
@@ -702,8 +709,7 @@ impl<const D: usize> SideStep<D> {
         }
         let angle = libm::sqrt(square);
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-        let rows: [SVector<f64, D>; D] =
-            core::array::from_fn(|j| SVector::from_fn(|d, _| frame[D * j + d]));
+        let rows: [SVector<f64, D>; D] = core::array::from_fn(|j| SVector::from_fn(|d, _| frame[D * j + d]));
         // The unit normal towards which the tangent turns.
         let mut towards = SVector::<f64, D>::zeros();
         for j in 1..D {

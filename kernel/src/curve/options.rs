@@ -12,7 +12,7 @@ pub struct Options {
     /// Elements between two joints, 1 to 1024 (thesis 4.6). One is normally enough to be fair, more approach the
     /// true curve. Default 1.
     pub elements_per_span: u32,
-    /// Gauss–Lobatto points an element, 12 to 32. Fewer than 20 can be cheated by an optimiser. Default 24.
+    /// Gauss–Lobatto points an element, 12 to 32. Fewer than 20 can be cheated by an optimiser. Default 32.
     pub quadrature_points: u32,
     /// The largest number of iterations (trial steps). Default 200.
     pub max_iterations: u32,
@@ -28,7 +28,7 @@ impl Options {
     pub const DEFAULT: Self = Self {
         functional: Functional::MVC,
         elements_per_span: 1,
-        quadrature_points: 24,
+        quadrature_points: 32,
         max_iterations: 200,
         dimension: 0,
         relative_decrease: 1e-12,

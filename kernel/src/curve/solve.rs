@@ -30,8 +30,8 @@ pub struct Report {
     pub planar: bool,
     /// The functional's value by the rule that was minimised with.
     pub value: f64,
-    /// The functional's value of the resulting elements by a 32-point rule. Where it differs from `value` by more
-    /// than rounding, the curve is too wild for its elements: take more of them.
+    /// The functional's value of the resulting elements by a finer rule, 32 points on each half. Where it differs from
+    /// `value` by more than rounding, the curve is too wild for its elements: take more of them.
     pub fine_value: f64,
     /// The length `L`.
     pub length: f64,
@@ -52,11 +52,11 @@ pub const fn elements_len(curve: &Curve<'_>, options: &Options) -> usize {
     curve.spans().saturating_mul(options.elements_per_span as usize)
 }
 
-/// The workspace, in `f64`s, that [`solve`] needs for these data. It depends on the number of joints, on what is
+/// The workspace, in `f64`s, that [`solve()`] needs for these data. It depends on the number of joints, on what is
 /// fixed at them and on whether they lie in a plane, not on the numbers otherwise.
 ///
 /// # Errors
-/// Everything that [`solve`] would find wrong with the data and options.
+/// Everything that [`solve()`] would find wrong with the data and options.
 pub fn workspace_len(curve: &Curve<'_>, options: &Options) -> Result<usize, CurveError> {
     options.check()?;
     let unit = check(curve)?;
@@ -99,7 +99,7 @@ fn model<'a, const D: usize>(curve: &Curve<'a>, options: &Options) -> Model<'a, 
         functional: options.functional,
         rule: quadrature::lobatto(points).unwrap_or(quadrature::FINEST),
         gauge: 0.0,
-        guarded: false,
+        guarded: true,
         natural_cost: 0.0,
         start_length: 0.0,
     }
@@ -141,13 +141,18 @@ where
     model.start_length = model.rough_length(state);
     let scale = functional_scale(options, place.unit);
     let mut passes = Passes { observer, records, scale, iterations: 0, linearisations: 0 };
-    let wrong = |short: WorkspaceTooSmall| CurveError::WorkspaceTooSmall { needed: state_len + short.needed, given };
+    let wrong =
+        |short: WorkspaceTooSmall| CurveError::WorkspaceTooSmall { needed: state_len + short.needed, given };
 
     // First the shape, with a parametrisation that is kept even: only the shape decides how far a step goes then, and
     // what is left to the second pass lies in the right one of many shallow valleys.
-    let start_cost: f64 = (0..count).map(|element| model.cost(element, state)).sum();
-    model.guarded = start_cost.is_finite();
-    model.gauge = model.natural_cost.min(if start_cost > 0.0 { start_cost } else { f64::INFINITY }) / count as f64;
+    let mut start_cost: f64 = (0..count).map(|element| model.cost(element, state)).sum();
+    if !start_cost.is_finite() {
+        model.guarded = false;
+        start_cost = (0..count).map(|element| model.cost(element, state)).sum();
+    }
+    model.gauge =
+        model.natural_cost.min(if start_cost > 0.0 { start_cost } else { f64::INFINITY }) / count as f64;
     let settings = Settings { max_iterations: options.max_iterations as usize, ..Settings::DEFAULT };
     let shaping = Settings { relative_decrease: SHAPING_DECREASE, ..settings };
     let mut outcome = passes.minimise(&model, &shaping, state, work).map_err(wrong)?;
@@ -176,7 +181,7 @@ fn functional_scale(options: &Options, unit: f64) -> f64 {
 }
 
 /// The first pass ends when a step promises to lower the functional by less than this fraction.
-const SHAPING_DECREASE: f64 = 1e-3;
+const SHAPING_DECREASE: f64 = 1e-1;
 /// Steps of each element by itself between two of the whole curve.
 const RELAXATION: usize = 10;
 

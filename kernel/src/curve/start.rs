@@ -17,6 +17,8 @@ use nalgebra::SVector;
 /// `1 + 0.00613 θ²`, and its stretch is `∓ 0.0377 θ²` times the speed (fitted to `θ = π/2` and `π`).
 const SPEED_BY_TURN: f64 = 0.00613;
 const STRETCH_BY_TURN: f64 = 0.0377;
+/// The speeds that are tried, the preferred first; another must be twice as fair.
+const SPEED_FACTORS: [f64; 5] = [1.0, 0.6, 1.6, 0.36, 2.5];
 /// Turnings are not trusted beyond this.
 const MOST_TURN: f64 = 4.0;
 
@@ -53,18 +55,13 @@ fn carry<const D: usize>(
 }
 
 /// A frame whose first row is the tangent; in space the second is along the curvature, if there is any.
-fn frame_of<const D: usize>(
-    tangent: &SVector<f64, D>,
-    curvature: &SVector<f64, D>,
-) -> [SVector<f64, D>; D] {
+fn frame_of<const D: usize>(tangent: &SVector<f64, D>, curvature: &SVector<f64, D>) -> [SVector<f64, D>; D] {
     let mut frame = [*tangent; D];
     let normal = if D == 2 { None } else { unit(curvature) };
     frame[1] = normal.unwrap_or_else(|| perpendicular(tangent));
     if D == 3 {
         let [t, n] = [*tangent, frame[1]];
-        frame[2] = SVector::from_fn(|d, _| {
-            t[(d + 1) % D] * n[(d + 2) % D] - t[(d + 2) % D] * n[(d + 1) % D]
-        });
+        frame[2] = SVector::from_fn(|d, _| t[(d + 1) % D] * n[(d + 2) % D] - t[(d + 2) % D] * n[(d + 1) % D]);
     }
     orthonormalise(&mut frame);
     frame
@@ -215,7 +212,13 @@ where
         found
     }
 
-    fn curvature(&self, joint: usize, side: usize, tangent: &SVector<f64, D>, state: &[f64]) -> SVector<f64, D> {
+    fn curvature(
+        &self,
+        joint: usize,
+        side: usize,
+        tangent: &SVector<f64, D>,
+        state: &[f64],
+    ) -> SVector<f64, D> {
         let data = &self.joints()[joint];
         let given = &data.curvature[side];
         if given.given != Given::FREE {
@@ -257,6 +260,35 @@ where
         End { point: self.point(joint, state), frame, curvature: components, speed: 1.0, stretch: 0.0 }
     }
 
+    /// Speeds and stretches of a span from the turning of its tangents against the chord. Returns the span's rows.
+    ///
+    /// Where the tangents look away from the chord, a quintic with these speeds may have a cusp or a loop: other speeds
+    /// are tried too, and the fairest curve is taken.
+    fn set_speeds(&self, ends: &mut [End<D>; 2]) -> [SVector<f64, D>; 6] {
+        let chord = ends[1].point - ends[0].point;
+        let size = libm::sqrt(chord.dot(&chord));
+        let angle = |t: &SVector<f64, D>| {
+            let wedge = Dimension::<D>::wedge(&chord, t);
+            let across = libm::sqrt(wedge[0] * wedge[0] + wedge[1] * wedge[1] + wedge[2] * wedge[2]);
+            libm::atan2(across, chord.dot(t))
+        };
+        let turn = (angle(&ends[0].frame[0]) + angle(&ends[1].frame[0])).min(MOST_TURN);
+        let half = 0.5 * turn;
+        let length = if half > 1e-4 { size * half / libm::sin(half) } else { size };
+        let speed = length * (1.0 + SPEED_BY_TURN * turn * turn);
+        let stretch = STRETCH_BY_TURN * turn * turn;
+        let mut best = (f64::INFINITY, 1.0);
+        for factor in SPEED_FACTORS {
+            give_speeds(ends, speed * factor, stretch);
+            let cost = self.model.cost_of_rows(&rows_between(ends));
+            if cost < 0.5 * best.0 {
+                best = (cost, factor);
+            }
+        }
+        give_speeds(ends, speed * best.1, stretch);
+        rows_between(ends)
+    }
+
     /// Fills the state, and returns the sum of `1/length^power` over the elements: the natural cost.
     pub(super) fn fill(&self, state: &mut [f64]) -> f64 {
         state.fill(0.0);
@@ -266,12 +298,7 @@ where
         let mut natural = 0.0;
         for span in 0..spans {
             let mut ends = [self.end(span, 1, state), self.end((span + 1) % count, 0, state)];
-            set_speeds(&mut ends);
-            let rows = {
-                let [p0, v0, a0] = ends[0].rows();
-                let [p1, v1, a1] = ends[1].rows();
-                [p0, v0, a0, a1, v1, p1]
-            };
+            let rows = self.set_speeds(&mut ends);
             let parts = per_span as f64;
             for end in &mut ends {
                 end.speed /= parts;
@@ -324,24 +351,16 @@ where
     End { point, frame, curvature: components, speed: speed / parts, stretch: along / (parts * parts) }
 }
 
-/// Speeds and stretches of a span from the turning of its tangents against the chord.
-fn set_speeds<const D: usize>(ends: &mut [End<D>; 2])
-where
-    Dimension<D>: Exterior<D>,
-{
-    let chord = ends[1].point - ends[0].point;
-    let size = libm::sqrt(chord.dot(&chord));
-    let angle = |t: &SVector<f64, D>| {
-        let wedge = Dimension::<D>::wedge(&chord, t);
-        let across = libm::sqrt(wedge[0] * wedge[0] + wedge[1] * wedge[1] + wedge[2] * wedge[2]);
-        libm::atan2(across, chord.dot(t))
-    };
-    let turn = (angle(&ends[0].frame[0]) + angle(&ends[1].frame[0])).min(MOST_TURN);
-    let half = 0.5 * turn;
-    let length = if half > 1e-4 { size * half / libm::sin(half) } else { size };
-    let speed = length * (1.0 + SPEED_BY_TURN * turn * turn);
+/// The six rows of an element between two ends.
+fn rows_between<const D: usize>(ends: &[End<D>; 2]) -> [SVector<f64, D>; 6] {
+    let [p0, v0, a0] = ends[0].rows();
+    let [p1, v1, a1] = ends[1].rows();
+    [p0, v0, a0, a1, v1, p1]
+}
+
+fn give_speeds<const D: usize>(ends: &mut [End<D>; 2], speed: f64, stretch: f64) {
     for (end, sign) in ends.iter_mut().zip([-1.0, 1.0]) {
         end.speed = speed;
-        end.stretch = sign * STRETCH_BY_TURN * turn * turn * speed;
+        end.stretch = sign * stretch * speed;
     }
 }

@@ -27,7 +27,8 @@ pub struct Settings {
 
 impl Settings {
     /// 200 iterations, to rounding.
-    pub const DEFAULT: Self = Self { max_iterations: 200, relative_decrease: 0.0, relaxation: 0, first_radius: 1.0 };
+    pub const DEFAULT: Self =
+        Self { max_iterations: 200, relative_decrease: 0.0, relaxation: 0, first_radius: 1.0 };
 }
 
 impl Default for Settings {
@@ -81,6 +82,8 @@ const WINDOW_DECREASE: f64 = 1e3;
 /// Costs below this part of what is natural for the problem's size count as zero.
 const ZERO_COST: f64 = 1e-3;
 
+/// How often other starts of the elements' own unknowns may lead to a better minimum.
+const MOST_EXPLORATIONS: usize = 3;
 /// How many steps every element takes from each of its starts.
 const EXPLORATION: usize = 15;
 
@@ -134,6 +137,9 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         let natural = self.problem.natural_cost();
         if self.relaxation > 0 {
             self.linearisations += relax::explore(self.problem, &mut self.work, EXPLORATION, state);
+            if self.problem.variants() > 0 {
+                state.copy_from_slice(self.work.best);
+            }
         }
         let mut value = self.linearise(state);
         let mut outcome = Outcome {
@@ -152,14 +158,24 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         let least_radius = 1e-9 * root;
         let mut shift = 0.0;
         let mut polish = POLISH;
+        let mut explorations = if self.relaxation > 0 { MOST_EXPLORATIONS } else { 0 };
         let mut past = [f64::INFINITY; WINDOW];
         loop {
             let gradient = self.work.gradient.iter().fold(0.0f64, |most, g| most.max(g.abs()));
             let floor = noise(value, natural);
             outcome = Outcome { value, gradient, linearisations: self.linearisations, ..outcome };
             let step = {
-                let Workspace { row_first, row_start, matrix, factor, gradient, step, scratch, direction, .. } =
-                    &mut self.work;
+                let Workspace {
+                    row_first,
+                    row_start,
+                    matrix,
+                    factor,
+                    gradient,
+                    step,
+                    scratch,
+                    direction,
+                    ..
+                } = &mut self.work;
                 let envelope = Envelope { first: row_first, start: row_start };
                 let mut vectors = Vectors { gradient, step, scratch, direction, factor };
                 trust_region::solve(&envelope, matrix, &mut vectors, radius, shift)
@@ -173,12 +189,22 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             } else {
                 outcome.decrement = f64::INFINITY;
             }
-            // A cost far below what is natural for the size is zero to the user, however it goes on relatively.
+            // A cost far below what is natural for the size is zero to the user, however it goes on relatively. Only a
+            // Newton step tells how far the minimum is: one that ends at the radius says no more than that.
             let little = settings.relative_decrease * (value + ZERO_COST * natural);
-            if step.predicted <= floor.max(little) {
-                if step.predicted <= floor || step.shift > 0.0 || polish == 0 {
+            let near = step.predicted <= if step.shift == 0.0 { floor.max(little) } else { floor };
+            if near {
+                if step.predicted <= floor || polish == 0 {
                     // A ball that shrank to nothing proves nothing; otherwise there is nothing left to gain.
                     let whole = step.shift == 0.0 || radius > 1e3 * least_radius;
+                    if whole && explorations > 0 && self.hop(state, value) {
+                        explorations -= 1;
+                        polish = POLISH;
+                        radius = settings.first_radius * root;
+                        shift = 0.0;
+                        value = self.linearise(state);
+                        continue;
+                    }
                     outcome.status = if whole { Status::Converged } else { Status::Stalled };
                     return outcome;
                 }
@@ -240,6 +266,22 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         }
     }
 
+    /// Looks for better minima of the elements' own unknowns beside the present ones; moves there if that lowers the
+    /// cost.
+    fn hop(&mut self, state: &mut [f64], value: f64) -> bool {
+        if self.problem.variants() == 0 {
+            return false;
+        }
+        self.linearisations += relax::explore(self.problem, &mut self.work, EXPLORATION, state);
+        let Workspace { trial, best, .. } = &mut self.work;
+        trial.copy_from_slice(best);
+        let better = self.cost() < value * (1.0 - relax::BETTER);
+        if better {
+            state.copy_from_slice(self.work.best);
+        }
+        better
+    }
+
     /// Takes the step into the trial state and relaxes it there; returns the cost.
     fn try_step(&mut self, state: &[f64], enough: f64) -> f64 {
         let Workspace { trial, step, sizes, offset, scratch, .. } = &mut self.work;
@@ -252,7 +294,8 @@ impl<P: Problem + ?Sized> Run<'_, P> {
 
     /// The cost of the trial state; infinite outside the domain.
     fn cost(&mut self) -> f64 {
-        let (problem, elements, width) = (self.problem, self.problem.elements(), self.executor.width().max(1));
+        let (problem, elements, width) =
+            (self.problem, self.problem.elements(), self.executor.width().max(1));
         let Workspace { trial, slots, .. } = &mut self.work;
         let trial = &**trial;
         let mut sum = 0.0;
@@ -276,8 +319,10 @@ impl<P: Problem + ?Sized> Run<'_, P> {
 
     /// Assembles gradient and Hessian at a state, scaled by natural sizes; returns the cost.
     fn linearise(&mut self, state: &[f64]) -> f64 {
-        let (problem, elements, width) = (self.problem, self.problem.elements(), self.executor.width().max(1));
-        let Workspace { row_first, row_start, matrix, gradient, sizes, offset, slots, slot_len, .. } = &mut self.work;
+        let (problem, elements, width) =
+            (self.problem, self.problem.elements(), self.executor.width().max(1));
+        let Workspace { row_first, row_start, matrix, gradient, sizes, offset, slots, slot_len, .. } =
+            &mut self.work;
         let envelope = Envelope { first: row_first, start: row_start };
         for block in 0..problem.blocks() {
             let (from, dofs) = (offset.get(block), problem.dofs(block));
@@ -298,8 +343,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                 slot.fill(0.0);
                 let (cost, rest) = slot.split_at_mut(1);
                 let (gradient, matrix) = rest.split_at_mut(local);
-                cost[0] =
-                    problem.linearise(first + index, state, gradient, &mut matrix[..packed_len(local)]);
+                cost[0] = problem.linearise(first + index, state, gradient, &mut matrix[..packed_len(local)]);
             });
             for (index, slot) in slots.chunks_exact(*slot_len).enumerate() {
                 let (list, local) = local_unknowns(problem, first + index);

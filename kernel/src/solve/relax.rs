@@ -26,12 +26,13 @@ pub(super) fn relax<P: Problem + ?Sized>(
     (0..problem.elements()).map(|element| relax_element(problem, work, element, steps, enough)).sum()
 }
 
-/// Relaxes every element of a state from each of its starts, and keeps the best for each. A few steps decide.
+/// Relaxes every element of a state from each of its starts, and keeps the best for each in `work.best`. Returns how
+/// often an element was linearised.
 pub(super) fn explore<P: Problem + ?Sized>(
     problem: &P,
     work: &mut Workspace<'_>,
     steps: usize,
-    state: &mut [f64],
+    state: &[f64],
 ) -> usize {
     if problem.variants() == 0 {
         return 0;
@@ -57,12 +58,11 @@ pub(super) fn explore<P: Problem + ?Sized>(
             }
         }
     }
-    state.copy_from_slice(work.best);
     linearisations
 }
 
 /// By how much, relatively, another start must be better to be preferred: rounding must not choose.
-const BETTER: f64 = 1e-9;
+pub(super) const BETTER: f64 = 1e-9;
 
 /// Whether a block belongs to one element alone.
 fn is_private(starts: &Indices<'_>, block: usize) -> bool {

@@ -30,7 +30,9 @@ impl Status {
             Self::Stalled => {
                 "stalled: no further progress is possible in this precision; the gradient says how near the minimum is"
             }
-            Self::IterationLimit => "stopped at the iteration limit: allow more iterations, or give better start values",
+            Self::IterationLimit => {
+                "stopped at the iteration limit: allow more iterations, or give better start values"
+            }
             Self::Unbounded => {
                 "unbounded: the curve grows without limit while the functional sinks; add a constraint, \
                  or choose a functional that has a minimum"

@@ -72,7 +72,8 @@ pub(super) fn solve(
                 let length = libm::sqrt(square);
                 let predicted = 0.5 * (shift * square - dot(gradient, step));
                 let found = Step { shift, length, predicted };
-                if (shift == 0.0 && length <= radius) || (length - radius).abs() <= RADIUS_TOLERANCE * radius {
+                if (shift == 0.0 && length <= radius) || (length - radius).abs() <= RADIUS_TOLERANCE * radius
+                {
                     return Some(found);
                 }
                 if length < radius {

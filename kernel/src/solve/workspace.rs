@@ -69,8 +69,8 @@ impl Layout {
             state,      // scratch state
             state,      // best state of several
             slot * slots,
-            local,      // rows of a dense local matrix: first
-            local,      // rows of a dense local matrix: start
+            local, // rows of a dense local matrix: first
+            local, // rows of a dense local matrix: start
             packed_len(local) * 2 + 5 * local,
         ]
     }

@@ -1,0 +1,72 @@
+# make coving        the main job: the coving of the thesis from data to NC path and picture, in coving/
+# make test          everything that is promised, checked (Rust, a C and C++ compiler, Ceres)
+# make test-clients  the same with heavy real clients (LinuxCNC's interpreter)
+# make lint          formatting, clippy, documentation
+# make header        writes include/minvar.h anew
+# make help          this text
+#
+# Every target installs what it needs from Debian's packages, if it may.
+
+CARGO ?= cargo
+CC ?= cc
+CFLAGS ?= -O2
+OUT := coving
+LIB := target/release/libminvar.a
+WARN := -std=c11 -Wall -Wextra -Wpedantic -Wconversion -Werror
+
+.PHONY: coving test test-clients lint header help tools lib examples table clean
+
+help:
+	@sed -n 's/^# \{0,1\}//p' Makefile | head -8
+
+tools:
+	@command -v $(CARGO) >/dev/null || { echo "minvar needs Rust 1.87 or later: https://rustup.rs" >&2; exit 1; }
+	@scripts/need.sh $(CC) gcc "the C compiler"
+
+lib: tools
+	$(CARGO) build --locked --release -p minvar-ffi
+
+examples: lib
+	@mkdir -p target/c_examples
+	$(CC) $(WARN) $(CFLAGS) -Iinclude c_examples/01_coving.c $(LIB) -lm -o target/c_examples/01_coving
+
+coving: examples
+	$(CARGO) build --locked --release -p minvar-cli
+	@mkdir -p $(OUT)
+	@echo
+	target/c_examples/01_coving $(OUT)/clear_of_the_duct.ngc
+	@echo
+	target/release/minvar curve tests/data/curves/coving.mvc --elements-per-span 8 \
+		--svg $(OUT)/coving.svg --nc $(OUT)/coving.ngc --units inch --tolerance 0.001 --feed 40 --safe-height 2 \
+		--csv $(OUT)/coving.csv --json $(OUT)/coving.json
+	@echo
+	@ls -l $(OUT)
+
+test: tools
+	@scripts/need.sh c++ g++ "the C++ compiler"
+	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "the reference that curves are checked against"
+	MINVAR_HEADER=check $(CARGO) build --locked --release -p minvar-ffi
+	$(CARGO) test --locked --workspace --exclude minvar-ffi
+
+test-clients: coving
+	@scripts/need.sh rs274 linuxcnc-uspace "a real control's interpreter"
+	scripts/rs274.sh $(OUT)/coving.ngc $(OUT)/clear_of_the_duct.ngc
+
+# Published / ours / Ceres for every set of Appendix A.
+table: tools
+	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "the reference that curves are checked against"
+	$(CARGO) run --locked --release -p minvar-tests --bin table
+
+lint: tools
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --locked --workspace --exclude minvar-ffi --all-targets -- -D warnings
+	$(CARGO) clippy --locked -p minvar-ffi -- -D warnings
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --workspace --exclude minvar-ffi --no-deps
+
+header: tools
+	touch ffi/build.rs
+	$(CARGO) build --locked --release -p minvar-ffi
+
+clean:
+	$(CARGO) clean
+	rm -rf $(OUT)

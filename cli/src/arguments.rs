@@ -1,0 +1,255 @@
+//! What the command takes.
+
+use crate::output::Target;
+use crate::solve::Functional;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::{Path, PathBuf};
+
+/// Fair curves: from a file of constraints to pictures, tables and NC paths.
+#[derive(Debug, Parser)]
+#[command(name = "minvar", version, max_term_width = 100, arg_required_else_help = true)]
+pub(crate) struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// The things to do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Computes the fairest curve through joints
+    #[command(after_long_help = CURVE_HELP, after_help = "`minvar curve --help` describes the input file, with examples.")]
+    Curve(Box<CurveArguments>),
+}
+
+const CURVE_HELP: &str = "\
+Input:
+  Joints and one curve, in any order; `;` or `#` begins a comment. A joint has a name, a position, and where wanted a
+  tangent (a direction) and a curvature vector (to the centre of curvature, 1/radius long). Fixed values are kept, Initial
+  values are where the search starts; all else is found. G2 joints have a common curvature on both sides, G1 joints a
+  common tangent only, G0 joints are corners.
+
+    (G2Joint a (0.5,-12,0) (Fixed Tangent (0,1,0)) (Fixed Curvature (0.27,0,0)))
+    (G2Joint b (20,-0.5,0) (Fixed Tangent (1,0,0)))
+    (G2Curve coving Open (a,b))
+
+Examples:
+  minvar curve coving.mvc --svg coving.svg
+  minvar curve coving.mvc --elements-per-span 4 --json - --quiet
+  minvar curve coving.mvc --nc coving.ngc --feed 600 --safe-height 5 --depth -2 --tolerance 0.005
+  minvar curve - --csv samples.csv --samples 101 < coving.mvc
+
+Exit codes:
+  0  the curve was computed and all was written
+  1  the curve did not converge; figures and files are those of the last shape, but no NC path is written
+  2  the input or the command line is wrong
+  3  an output could not be written";
+
+/// `minvar curve`
+#[derive(Debug, Args)]
+pub(crate) struct CurveArguments {
+    /// The constraints; `-` reads the standard input
+    pub(crate) file: PathBuf,
+
+    /// What the curve minimises
+    #[arg(long, value_enum, default_value_t = Functional::Mvc, value_name = "NAME")]
+    pub(crate) functional: Functional,
+
+    /// Quintic elements between two joints: more come nearer to the true minimum
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub(crate) elements_per_span: u32,
+
+    /// Stop after so many iterations
+    #[arg(long, default_value_t = 200, value_name = "N")]
+    pub(crate) max_iterations: u32,
+
+    /// Print no figures
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+
+    /// Write a picture: the curve, its curvature comb and its curvature against the arc length
+    #[arg(long, value_name = "OUT", help_heading = "Outputs (`-` is the standard output)")]
+    pub(crate) svg: Option<PathBuf>,
+
+    /// Write an NC path (G-code)
+    #[arg(
+        long,
+        value_name = "OUT",
+        requires_all = ["feed", "safe_height"],
+        help_heading = "Outputs (`-` is the standard output)"
+    )]
+    pub(crate) nc: Option<PathBuf>,
+
+    /// Write samples: position, tangent, curvature vector, curvature, torsion and change of curvature
+    #[arg(long, value_name = "OUT", help_heading = "Outputs (`-` is the standard output)")]
+    pub(crate) csv: Option<PathBuf>,
+
+    /// Write the figures and the elements' rows C(0), C'(0), C''(0), C''(1), C'(1), C(1)
+    #[arg(long, value_name = "OUT", help_heading = "Outputs (`-` is the standard output)")]
+    pub(crate) json: Option<PathBuf>,
+
+    /// Samples an element in the CSV file, both ends among them
+    #[arg(
+        long,
+        default_value_t = 21,
+        value_name = "N",
+        value_parser = clap::value_parser!(u32).range(2..=100_000),
+        help_heading = "Outputs (`-` is the standard output)"
+    )]
+    pub(crate) samples: u32,
+
+    /// The NC path.
+    #[command(flatten)]
+    pub(crate) path: PathArguments,
+}
+
+/// The NC path's options; lengths in the curve's own unit.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "NC path (lengths in the curve's unit)")]
+pub(crate) struct PathArguments {
+    /// The greatest distance between path and curve
+    #[arg(long, default_value_t = 0.01, value_name = "LENGTH", requires = "nc")]
+    pub(crate) tolerance: f64,
+
+    /// The cutting feed, length a minute
+    #[arg(long, value_name = "FEED", requires = "nc")]
+    pub(crate) feed: Option<f64>,
+
+    /// The feed while plunging; without it the cutting feed
+    #[arg(long, value_name = "FEED", requires = "nc")]
+    pub(crate) plunge_feed: Option<f64>,
+
+    /// The height of rapid moves: above the cut and everything else
+    #[arg(long, value_name = "LENGTH", requires = "nc", allow_negative_numbers = true)]
+    pub(crate) safe_height: Option<f64>,
+
+    /// What is added to the curve's height while cutting: negative goes into the material
+    #[arg(
+        long,
+        default_value_t = 0.0,
+        value_name = "LENGTH",
+        requires = "nc",
+        allow_negative_numbers = true
+    )]
+    pub(crate) depth: f64,
+
+    /// The unit that the program declares
+    #[arg(long, value_enum, default_value_t = Units::Mm, value_name = "UNIT", requires = "nc")]
+    pub(crate) units: Units,
+
+    /// The machine's plane that the curve's x and y become
+    #[arg(long, value_enum, default_value_t = MachinePlane::Xy, value_name = "PLANE", requires = "nc")]
+    pub(crate) plane: MachinePlane,
+
+    /// Straight moves (G1) only: also for space curves
+    #[arg(long, requires = "nc")]
+    pub(crate) chords: bool,
+
+    /// Decimals of the coordinates
+    #[arg(long, default_value_t = 6, value_name = "N", requires = "nc", value_parser = clap::value_parser!(u8).range(6..=9))]
+    pub(crate) decimals: u8,
+
+    /// Explain the program's lines in comments
+    #[arg(long, requires = "nc")]
+    pub(crate) comments: bool,
+}
+
+/// `--units`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Units {
+    /// Millimetres (G21)
+    Mm,
+    /// Inches (G20)
+    Inch,
+}
+
+/// `--plane`
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MachinePlane {
+    /// G17
+    Xy,
+    /// G18
+    Zx,
+    /// G19
+    Yz,
+}
+
+impl CurveArguments {
+    /// Where each output goes that was asked for, by its option.
+    pub(crate) fn targets(&self) -> Vec<(&'static str, Target)> {
+        let all = [("--svg", &self.svg), ("--nc", &self.nc), ("--csv", &self.csv), ("--json", &self.json)];
+        all.into_iter().filter_map(|(option, path)| Some((option, Target::new(path.as_deref()?)))).collect()
+    }
+
+    /// Whether the constraints come from the standard input.
+    pub(crate) fn reads_stdin(&self) -> bool {
+        self.file == Path::new("-")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::{CommandFactory, error::ErrorKind};
+
+    fn parse(line: &str) -> Result<CurveArguments, clap::Error> {
+        let Command::Curve(arguments) = Arguments::try_parse_from(line.split_whitespace())?.command;
+        Ok(*arguments)
+    }
+
+    #[test]
+    fn the_definition_is_sound_and_the_helps_examples_parse() {
+        Arguments::command().debug_assert();
+        let examples: Vec<_> = CURVE_HELP.lines().filter(|line| line.starts_with("  minvar ")).collect();
+        assert_eq!(examples.len(), 4);
+        for example in examples {
+            let line = example.split(" < ").next().unwrap_or_default();
+            parse(line).unwrap_or_else(|error| panic!("{line}: {error}"));
+        }
+    }
+
+    #[test]
+    fn a_path_needs_a_feed_and_a_safe_height() {
+        for line in [
+            "minvar curve a --nc b",
+            "minvar curve a --nc b --feed 100",
+            "minvar curve a --nc - --safe-height 5",
+        ] {
+            let error = parse(line).expect_err(line);
+            assert_eq!(error.kind(), ErrorKind::MissingRequiredArgument, "{line}");
+            assert_eq!(error.exit_code(), 2);
+        }
+        let path =
+            parse("minvar curve a --nc b --feed 100 --safe-height 5 --depth -1.5").expect("complete").path;
+        assert_eq!(
+            (path.feed, path.safe_height, path.depth, path.tolerance),
+            (Some(100.0), Some(5.0), -1.5, 0.01)
+        );
+    }
+
+    #[test]
+    fn path_options_without_a_path_are_refused() {
+        for option in [
+            "--feed 1",
+            "--depth 1",
+            "--tolerance 1",
+            "--units inch",
+            "--plane yz",
+            "--chords",
+            "--decimals 7",
+        ] {
+            let error = parse(&format!("minvar curve a {option}")).expect_err(option);
+            assert_eq!(error.kind(), ErrorKind::MissingRequiredArgument, "{option}");
+        }
+        assert!(parse("minvar curve a").is_ok(), "defaults do not count");
+    }
+
+    #[test]
+    fn counts_out_of_range_are_refused() {
+        for option in
+            ["--elements-per-span 0", "--elements-per-span 1025", "--samples 1", "--nc b --decimals 5"]
+        {
+            assert!(parse(&format!("minvar curve a {option}")).is_err(), "{option}");
+        }
+    }
+}

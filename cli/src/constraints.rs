@@ -1,0 +1,124 @@
+//! Reading a curve's constraints in the format of the thesis (Appendix A).
+//!
+//! A file holds joints and exactly one curve, in any order:
+//!
+//! ```text
+//! ; from here to the end of the line is a comment, and so it is after `#`
+//! (G2Joint a 1 Fixed (-2,0,0) (Fixed Tangent (0,1,0)) (Fixed Curvature (0.27,0,0)))
+//! (G2Joint b (0,0,0) (Initial Tangent (1,-1,0)))
+//! (G2Curve test Open (a,b))
+//! ```
+//!
+//! A position is fixed unless `Initial` stands before it; the number before it is ignored. Keywords may be written in any
+//! case, names may not. Where a joint splits a tangent (`G0Joint`) or a curvature (`G0Joint`, `G1Joint`), a constraint
+//! holds for both sides; our extension `(Fixed Tangent Arriving (0,1,0))` or `Leaving` gives it for one.
+//!
+//! Whether the numbers make sense as a curve is for the kernel to say: [`NamedJoint`] keeps the place for its answer.
+
+mod fault;
+mod parse;
+mod point;
+mod resolve;
+#[cfg(test)]
+mod tests;
+mod words;
+
+pub(crate) use fault::Fault;
+
+use words::Place;
+
+/// A curve to compute, as the file says.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Specification {
+    /// The curve's name.
+    pub(crate) name: String,
+    /// Whether the last joint is joined to the first.
+    pub(crate) closed: bool,
+    /// The joints in the curve's order: at least two, three of a closed curve.
+    pub(crate) joints: Vec<NamedJoint>,
+}
+
+/// One joint of the curve.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct NamedJoint {
+    /// Its name, unique in the file.
+    pub(crate) name: String,
+    /// What is continuous here.
+    pub(crate) continuity: Continuity,
+    /// The position: fixed, or a start value.
+    pub(crate) position: Given,
+    /// The tangent arriving and leaving: the same unless the joint is [`Continuity::G0`]. Any length but zero.
+    pub(crate) tangent: [Given; 2],
+    /// The curvature vector arriving and leaving: the same if the joint is [`Continuity::G2`].
+    pub(crate) curvature: [Given; 2],
+    /// The line of its opening parenthesis, from 1.
+    pub(crate) line: usize,
+    /// The column of its opening parenthesis in characters, from 1.
+    pub(crate) column: usize,
+}
+
+/// How smoothly a curve passes a joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Continuity {
+    /// Position only: a corner.
+    G0,
+    /// Position and tangent.
+    G1,
+    /// Position, tangent and curvature.
+    G2,
+}
+
+/// What is known of a vector beforehand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Given {
+    /// Nothing.
+    Free,
+    /// A value to start from.
+    Initial([f64; 3]),
+    /// A value to keep.
+    Fixed([f64; 3]),
+}
+
+impl Given {
+    /// Whether the value must be kept.
+    pub(crate) fn is_fixed(self) -> bool {
+        matches!(self, Self::Fixed(_))
+    }
+}
+
+/// A file that could be read, and what is odd about it.
+#[derive(Debug)]
+pub(crate) struct Reading {
+    /// The curve.
+    pub(crate) specification: Specification,
+    /// What the user may not have meant.
+    pub(crate) warnings: Vec<Fault>,
+}
+
+/// Reads the bytes of a file. Linear in their number.
+pub(crate) fn read(bytes: &[u8]) -> Result<Reading, Box<Fault>> {
+    let text = match std::str::from_utf8(bytes) {
+        Ok(text) => text.strip_prefix('\u{feff}').unwrap_or(text),
+        Err(error) => return Err(not_text(bytes, error.valid_up_to())),
+    };
+    resolve::resolve(text, parse::forms(text)?)
+}
+
+/// What the kernel says of a joint, at the joint's place in the file that was read.
+pub(crate) fn fault_at(bytes: &[u8], joint: &NamedJoint, message: impl Into<String>) -> Box<Fault> {
+    let text = String::from_utf8_lossy(bytes);
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    Fault::error(text, words::place_at(text, joint.line, joint.column), message)
+}
+
+/// Why bytes that are not UTF-8 cannot be read, and where they begin to be wrong.
+fn not_text(bytes: &[u8], valid: usize) -> Box<Fault> {
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(valid + 80)]);
+    let place = words::place_of(&text, valid);
+    let fault = Fault::error(&text, place, format!("byte {} of this file is not UTF-8 text", valid + 1));
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        fault.help("it looks like UTF-16: save it as UTF-8")
+    } else {
+        fault.help("a constraint file is plain text saved as UTF-8")
+    }
+}

@@ -1,0 +1,34 @@
+//! The NC path: the command's options in the kernel's words.
+
+use crate::arguments::{MachinePlane, PathArguments, Units};
+use minvar::curve::Element;
+use minvar::toolpath::{self, GcodeOptions, Motion, Plane, Summary};
+
+/// The program's text and what it does, or the option's fault.
+pub(crate) fn program(elements: &[Element], arguments: &PathArguments) -> Result<(String, Summary), String> {
+    let options = GcodeOptions {
+        units: match arguments.units {
+            Units::Mm => toolpath::Units::Millimetres,
+            Units::Inch => toolpath::Units::Inches,
+        },
+        plane: match arguments.plane {
+            MachinePlane::Xy => Plane::Xy,
+            MachinePlane::Zx => Plane::Zx,
+            MachinePlane::Yz => Plane::Yz,
+        },
+        motion: if arguments.chords { Motion::Chords } else { Motion::Arcs },
+        plunge_feed: arguments.plunge_feed,
+        depth: arguments.depth,
+        decimals: arguments.decimals,
+        comments: arguments.comments,
+        ..GcodeOptions::new(
+            arguments.tolerance,
+            arguments.feed.ok_or("--nc needs --feed")?,
+            arguments.safe_height.ok_or("--nc needs --safe-height")?,
+        )
+    };
+    let mut text = String::new();
+    let summary = toolpath::write_gcode(elements, &options, &mut text)
+        .map_err(|error| format!("no NC path: {error}"))?;
+    Ok((text, summary))
+}
