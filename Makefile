@@ -3,6 +3,9 @@
 # make test-clients  the same with heavy real clients (LinuxCNC's interpreter)
 # make lint          formatting, clippy, documentation
 # make header        writes include/minvar.h anew
+# make table         Appendix A of the thesis: published, ours, Ceres
+# make memory        bytes of workspace, stack and code
+# make pictures      draws docs/*.svg anew
 # make help          this text
 #
 # Every target installs what it needs from Debian's packages, if it may.
@@ -14,10 +17,10 @@ OUT := coving
 LIB := target/release/libminvar.a
 WARN := -std=c11 -Wall -Wextra -Wpedantic -Wconversion -Werror
 
-.PHONY: coving test test-clients lint header help tools lib examples table clean
+.PHONY: coving test test-clients lint header help tools lib examples table memory pictures clean
 
 help:
-	@sed -n 's/^# \{0,1\}//p' Makefile | head -8
+	@sed -n 's/^# \{0,1\}//p' Makefile | head -11
 
 tools:
 	@command -v $(CARGO) >/dev/null || { echo "minvar needs Rust 1.87 or later: https://rustup.rs" >&2; exit 1; }
@@ -37,7 +40,7 @@ coving: examples
 	target/c_examples/01_coving $(OUT)/clear_of_the_duct.ngc
 	@echo
 	target/release/minvar curve tests/data/curves/coving.mvc --elements-per-span 8 \
-		--svg $(OUT)/coving.svg --nc $(OUT)/coving.ngc --units inch --tolerance 0.001 --feed 40 --safe-height 2 \
+		--svg $(OUT)/coving.svg --polygon "0,0 6,0 6,-6 0,-6" --nc $(OUT)/coving.ngc --units inch --path-tolerance 0.001 --feed 40 --safe-height 2 \
 		--csv $(OUT)/coving.csv --json $(OUT)/coving.json
 	@echo
 	@ls -l $(OUT)
@@ -56,6 +59,22 @@ test-clients: coving
 table: tools
 	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "the reference that curves are checked against"
 	$(CARGO) run --locked --release -p minvar-tests --bin table
+
+memory: examples
+	$(CC) -std=gnu11 -Wall -Wextra -O2 -Iinclude tests/c/memory.c $(LIB) -lm -lpthread -o target/c_examples/memory
+	target/c_examples/memory
+	$(CC) -Os -ffunction-sections -Iinclude c_examples/01_coving.c $(LIB) -lm -Wl,--gc-sections -o target/c_examples/small
+	@printf 'int main(void) { return 0; }\n' | $(CC) -Os -x c - -o target/c_examples/empty
+	@echo
+	size target/c_examples/small target/c_examples/empty
+
+pictures: tools
+	$(CARGO) build --locked --release -p minvar-cli
+	@mkdir -p docs
+	target/release/minvar curve tests/data/curves/coving_clear.mvc --elements-per-span 8 --svg docs/coving.svg \
+		--polygon "0,0 6,0 6,-6 0,-6"
+	target/release/minvar curve tests/data/curves/woodford.mvc --svg docs/woodford.svg
+	target/release/minvar curve tests/data/curves/peters_helix.mvc --svg docs/peters_helix.svg
 
 lint: tools
 	$(CARGO) fmt --all --check

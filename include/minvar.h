@@ -6,16 +6,20 @@
  * Units      Lengths are in the caller's unit, curvatures 1/length, angles radians, feeds length/minute. A tolerance is
  *            a length. Planar signed curvature is positive to the left. Parameters run from 0 to 1 an element.
  * Results    Every function that can fail returns a minvar_code, MINVAR_OK (0) if it did what it says. On an error
- *            nothing was computed and no result was written (text that a writer got is the one exception, and is named).
- *            How a computation ended is not an error but a minvar_status in its report.
+ *            nothing was computed and no result was written; what a writer or visitor got before it stopped is the one
+ *            exception. How a computation ended is not an error but a minvar_status in its report.
  * Arguments  const input first, then memory, then output, last the error, which may be NULL. Other pointers must not be
- *            NULL unless their function says so; NULL, misaligned pointers and wrong counts come back as codes. A
- *            pointer that is neither NULL nor valid cannot be detected: behaviour is undefined then, as in all of C.
+ *            NULL unless their function says so, but an array of no entries may be; a context is the caller's own and
+ *            never looked at. Every function may return MINVAR_NULL_POINTER, MINVAR_MISALIGNED and MINVAR_TOO_LONG; its
+ *            comment lists the other errors. A pointer that is neither NULL nor valid cannot be detected: behaviour is
+ *            undefined then, as in all of C, and so it is where an output overlaps anything else.
  * Memory     The library never allocates, keeps no pointer after it returned, and has no global state. Workspaces come
- *            from the caller, who asks for the length first; one may be used again, dirty, for anything.
- * Threads    Any number may call at once, each with its own memory.
- * Numbers    NaN, infinities and constants that are not defined come back as codes. The same input gives the same bits on
- *            every machine with IEEE 754 doubles.
+ *            from the caller, who asks for the length first; one may be used again, dirty, for anything. Nothing that
+ *            it returns is to be freed.
+ * Threads    Any number may call at once, each with its own memory; input may be shared. Callbacks come on the thread
+ *            that called, before the call returns.
+ * Numbers    NaN, infinities and constants that are not defined come back as codes. The same input gives the same bits
+ *            on every machine with IEEE 754 doubles in the default rounding mode.
  *
  * Licence: MIT or Apache-2.0. This file is written by cbindgen from ffi/: do not edit it.
  */
@@ -36,11 +40,12 @@
 typedef enum minvar_code {
     // Nothing: the call did what it says.
     MINVAR_OK = 0,
-    // A pointer is NULL that must not be.
+    // A pointer is NULL that must not be; the message names the argument.
     MINVAR_NULL_POINTER = 1,
-    // A pointer is not aligned for its type.
+    // A pointer is not aligned for its type; the message names the argument. Where it is the error's own pointer, there
+    // is no message.
     MINVAR_MISALIGNED = 2,
-    // A length is larger than memory can be.
+    // An array is longer than memory can be; the message names the argument.
     MINVAR_TOO_LONG = 3,
     // An open curve has fewer than two joints. `needed`, `given`.
     MINVAR_TOO_FEW_JOINTS = 10,
@@ -48,13 +53,13 @@ typedef enum minvar_code {
     MINVAR_CLOSED_TOO_FEW_JOINTS = 11,
     // A number of a joint is NaN or infinite. `index`: the joint.
     MINVAR_JOINT_NOT_FINITE = 12,
-    // A status or continuity of a joint is not one of the constants. `index`: the joint.
+    // A `given` or the `continuity` of a joint is not one of the constants. `index`: the joint.
     MINVAR_UNKNOWN_CODE = 13,
-    // Two neighbouring joints coincide. `index`: the first of them.
+    // Two neighbouring joints are at the same point, to 1e-12 of the data's extent. `index`: the first of them.
     MINVAR_COINCIDENT_JOINTS = 14,
     // A given tangent is the zero vector. `index`: the joint.
     MINVAR_ZERO_TANGENT = 15,
-    // A given curvature is not perpendicular to the given tangent. `index`: the joint.
+    // A given curvature is not perpendicular to the given tangent, to 1e-6 of its length. `index`: the joint.
     MINVAR_CURVATURE_NOT_PERPENDICULAR = 16,
     // A curvature is given where the direction of the curve is unknown. `index`: the joint.
     MINVAR_CURVATURE_NEEDS_TANGENT = 17,
@@ -62,45 +67,47 @@ typedef enum minvar_code {
     MINVAR_SIDES_DIFFER = 18,
     // Fewer than two joints have positions.
     MINVAR_NO_POSITION = 19,
-    // Lengths beyond 1e-90 to 1e90.
+    // The data are too large or too small for the arithmetic: lengths must be from 1e-90 to 1e90.
     MINVAR_SIZE_OUT_OF_RANGE = 20,
     // A planar curve was asked for but the data do not lie in a plane.
     MINVAR_NOT_PLANAR = 21,
-    // An option has a value that it cannot have; the message names it.
+    // An option has a value that it cannot have; the message names it. `index`: its place among the fields of the
+    // options, from 0.
     MINVAR_BAD_OPTION = 22,
     // The workspace is too short. `needed`, `given`, in doubles.
     MINVAR_WORKSPACE_TOO_SMALL = 23,
-    // An array for results is too short. `needed`, `given`, in its entries.
+    // An array for results is too short; the message names it. `needed`, `given`, in its entries.
     MINVAR_RESULT_TOO_SHORT = 24,
     // There are no elements.
     MINVAR_NO_ELEMENTS = 40,
-    // A number of an element is NaN, infinite or too large. `index`: the element.
+    // A number of an element is NaN, infinite or (in paths) beyond 1e100. `index`: the element.
     MINVAR_ELEMENT_NOT_FINITE = 41,
     // An element has no tangent somewhere: its derivative vanishes. `index`: the element.
     MINVAR_IRREGULAR = 42,
-    // The place is not on the curve.
+    // An element, parameter, arc length or point that a place is asked for by is NaN or beyond the curve; the message
+    // says what it may be.
     MINVAR_OUT_OF_RANGE = 43,
-    // The tolerance is zero, negative or not finite.
+    // The tolerance is zero, negative, NaN or infinite.
     MINVAR_BAD_TOLERANCE = 60,
     // The tolerance is finer than the numbers allow; the message says how fine it can be.
     MINVAR_TOLERANCE_TOO_FINE = 61,
-    // An element does not begin where the one before ends. `index`: the later element.
+    // An element does not begin where the one before ends, to a thousandth of the tolerance. `index`: the later element.
     MINVAR_GAP = 62,
     // An element leaves the plane z = constant, which arcs need. `index`: the element.
     MINVAR_PATH_NOT_PLANAR = 63,
     // The number of decimals is not 6 to 9.
     MINVAR_BAD_DECIMALS = 70,
-    // The feed is not positive and finite.
+    // The feed is not positive and finite, or rounds to zero.
     MINVAR_BAD_FEED = 71,
-    // The plunge feed is not positive and finite.
+    // The plunge feed is not positive and finite, or rounds to zero.
     MINVAR_BAD_PLUNGE_FEED = 72,
-    // The depth is not finite or too large.
+    // The depth is not finite or too large for the decimals.
     MINVAR_BAD_DEPTH = 73,
-    // The safe height is not above the cut.
+    // The safe height is not above the cut, not finite or too large; the message says how high the cut reaches.
     MINVAR_BAD_SAFE_HEIGHT = 74,
     // A coordinate is too large for the decimals. `index`: the element.
     MINVAR_COORDINATE_TOO_LARGE = 75,
-    // The caller's writer or visitor asked to stop: what was written is incomplete.
+    // The caller's writer or visitor asked to stop: what it got is incomplete. Other results are untouched.
     MINVAR_STOPPED = 76,
 } minvar_code;
 
@@ -181,17 +188,18 @@ typedef struct minvar_element {
     double rows[6][3];
 } minvar_element;
 
-// An error with what it is about. Passed as the last argument, it may be NULL if nobody wants to know.
+// An error with what it is about. The last argument of every function that can fail; it may be NULL if nobody wants to
+// know. Every call fills it: after a success with MINVAR_OK and "no error".
 typedef struct minvar_error {
     // The code, as returned.
     enum minvar_code code;
-    // The joint, element or option that is to blame, where the code says so; else 0.
+    // The joint, element or option, from 0, that is to blame, where the code says so; else 0.
     size_t index;
-    // The length that is needed, where the code says so; else 0.
+    // How many entries are needed, where the code says so; else 0.
     size_t needed;
-    // The length that was given, where the code says so; else 0.
+    // How many were given, where the code says so; else 0.
     size_t given;
-    // One sentence in English, NUL-terminated, that names the culprit.
+    // One sentence in English, ASCII, NUL-terminated, that names the culprit. Its words may change; the codes do not.
     char message[192];
 } minvar_error;
 
@@ -201,7 +209,7 @@ typedef struct minvar_options {
     uint32_t functional;
     // Elements between two joints, 1 to 1024 (thesis 4.6). More approach the true curve. Default 1.
     uint32_t elements_per_span;
-    // Gauss-Lobatto points an element, 12 to 32. Fewer than 20 can be cheated by an optimiser. Default 24.
+    // Gauss-Lobatto points an element, 12 to 32. Fewer than 20 can be cheated by an optimiser. Default 32.
     uint32_t quadrature_points;
     // The largest number of iterations (trial steps). Default 200.
     uint32_t max_iterations;
@@ -216,7 +224,7 @@ typedef struct minvar_options {
 typedef struct minvar_quantity {
     // One of enum minvar_given.
     uint32_t given;
-    // The vector x, y, z: a position, a tangent of any length but zero, or a curvature vector.
+    // The vector x, y, z: a position, a tangent of any length but zero, or a curvature vector in 1/length.
     double value[3];
 } minvar_quantity;
 
@@ -237,7 +245,7 @@ typedef struct minvar_joint {
     struct minvar_quantity curvature[2];
 } minvar_joint;
 
-// The designer's data: joints in order along the curve, owned by the caller and only read.
+// The designer's data: joints in order along the curve, owned by the caller, only read, and only while a call lasts.
 typedef struct minvar_curve {
     // The joints; at least two, three of a closed curve.
     const struct minvar_joint *joints;
@@ -247,7 +255,8 @@ typedef struct minvar_curve {
     int32_t closed;
 } minvar_curve;
 
-// What one iteration did: one trial step, accepted or not. In the caller's units.
+// What one iteration did: one trial step, accepted or not. `value`, `predicted`, `actual` and `gradient` in the
+// functional's unit (1/length^3 for MVC, 1/length for MEC), `step` and `shift` without one.
 typedef struct minvar_record {
     // The functional after the iteration. In the first iterations it holds a term that keeps the parametrisation even.
     double value;
@@ -263,12 +272,13 @@ typedef struct minvar_record {
     double shift;
 } minvar_record;
 
-// Watches a solve: called after every iteration with its number, from 1, and its record, which lives until the
-// function returns. Return 0 to go on, anything else to stop with MINVAR_CANCELLED and the best curve so far. It must
-// not jump out of the call.
+// Watches a solve: called on the solving thread after every iteration with the caller's context, the iteration's
+// number, from 1, and its record, which lives until the function returns. Return 0 to go on, anything else to stop with
+// MINVAR_CANCELLED and the best curve so far. It may call this library with other memory; it must return, not leave by
+// longjmp() or an exception.
 typedef int32_t (*minvar_observer)(void *context, size_t iteration, const struct minvar_record *record);
 
-// How a curve came out. All figures in the caller's units.
+// How a curve came out. All figures in the caller's units; `value`, `fine_value` and `decrement` in the functional's.
 typedef struct minvar_report {
     // How the computation ended.
     enum minvar_status status;
@@ -282,14 +292,14 @@ typedef struct minvar_report {
     size_t unknowns;
     // The functional's value by the rule that was minimised with.
     double value;
-    // The functional's value by a 32-point rule. Where it differs from `value` by more than rounding, the curve is too
+    // The functional's value by a finer rule (32 points on each half). Where it differs from `value` by more than rounding, the curve is too
     // wild for its elements: take more of them.
     double fine_value;
     // The length L.
     double length;
-    // The variation of curvature V, integral of (d kappa/ds)^2 ds.
+    // The variation of curvature V, integral of (d kappa/ds)^2 ds; 1/length^3.
     double variation;
-    // The bending energy E, integral of kappa^2 ds.
+    // The bending energy E, integral of kappa^2 ds; 1/length.
     double bending;
     // The largest gradient component, each times its unknown's natural size, as a fraction of the functional.
     double gradient;
@@ -297,7 +307,7 @@ typedef struct minvar_report {
     double decrement;
 } minvar_report;
 
-// What holds at a place of a chain, all in the caller's units.
+// What holds at a place of a chain of elements, all in the caller's units.
 typedef struct minvar_point {
     // The element, from 0.
     size_t element;
@@ -332,9 +342,9 @@ typedef struct minvar_figures {
     struct minvar_point least_curvature;
     // The place of the largest.
     struct minvar_point largest_curvature;
-    // The low corner of the bounding box.
+    // The low corner x, y, z of the smallest box parallel to the axes that holds the chain.
     double box_low[3];
-    // The high corner of the bounding box.
+    // Its high corner.
     double box_high[3];
 } minvar_figures;
 
@@ -350,9 +360,9 @@ typedef struct minvar_move {
     double deviation;
 } minvar_move;
 
-// Receives the moves of a path in order; `move` lives until the function returns. Return 0 to go on, anything else to
-// stop.
-typedef int32_t (*minvar_visitor)(void *context, const struct minvar_move *move_);
+// Receives the moves of a path in order, with the caller's context; `step` lives until the function returns. Return 0
+// to go on, anything else to stop with MINVAR_STOPPED. It must return, not leave by longjmp() or an exception.
+typedef int32_t (*minvar_visitor)(void *context, const struct minvar_move *step);
 
 // What a program is to be: start from minvar_gcode_defaults(). Lengths are in the program's unit.
 typedef struct minvar_gcode_options {
@@ -378,23 +388,25 @@ typedef struct minvar_gcode_options {
     int32_t comments;
 } minvar_gcode_options;
 
-// Receives text, `length` bytes that are not NUL-terminated and live until the function returns. Return 0 if all was
-// written, anything else to stop.
+// Receives text, with the caller's context: `length` bytes of ASCII that are not NUL-terminated and live until the
+// function returns. They come in pieces of any size, often of a few bytes: gather them in a buffer. Return 0 if all
+// was taken, anything else to stop with MINVAR_STOPPED. It must return, not leave by longjmp() or an exception.
 typedef int32_t (*minvar_writer)(void *context, const char *text, size_t length);
 
 // What was written.
 typedef struct minvar_gcode_summary {
-    // Lines of text.
+    // The number of lines of text.
     size_t lines;
-    // G2 and G3 moves.
+    // The number of G2 and G3 moves.
     size_t arcs;
-    // G1 moves that cut.
+    // The number of G1 moves that cut; the plunge is not counted.
     size_t chords;
-    // The length of the cut.
+    // The length of the cut, in the program's unit.
     double length;
-    // The time of the cut at the programmed feed, minutes, without acceleration, plunge and rapids.
+    // The time of the cut at the programmed feed in minutes, without acceleration, plunge and rapids.
     double minutes;
-    // Proven: no point of the printed cut is farther than this from the curve, nor the curve from the cut.
+    // Proven: no point of the printed cut is farther than this length from the curve (raised by `depth`), nor the
+    // curve from the cut.
     double deviation;
 } minvar_gcode_summary;
 
@@ -402,39 +414,42 @@ typedef struct minvar_gcode_summary {
 extern "C" {
 #endif // __cplusplus
 
-// The version of the library as `"MAJOR.MINOR.PATCH"`; static.
+// The version of the library as `"MAJOR.MINOR.PATCH"`; static: not to be freed.
 const char *minvar_version(void);
 
 // 1 if the library has the interface that the caller was compiled with, else 0: call
 // `minvar_abi_check(MINVAR_ABI)` once where the library is loaded dynamically.
 int32_t minvar_abi_check(uint32_t abi);
 
-// One English sentence on a status that a user can act on; static. A number that is no status gives "unknown status".
-const char *minvar_status_sentence(int32_t status);
+// One English sentence on a status (of enum minvar_status) that a user can act on; static: not to be freed. A number
+// that is no status gives "unknown status".
+const char *minvar_status_sentence(uint32_t status);
 
-// The six Bézier control points of an element, x, y, z each.
+// The six Bézier control points of one element, x, y, z each, in the caller's unit of length.
 //
-// Errors: MINVAR_NULL_POINTER.
+// Any element will do: numbers that are not finite give control points that are not.
 enum minvar_code minvar_element_bezier(const struct minvar_element *element,
                                        double (*points)[6][3],
                                        struct minvar_error *error);
 
-// The numbers of control points and of knots of a chain's B-spline.
-//
-// Errors: MINVAR_NULL_POINTER.
+// The numbers of control points and of knots that minvar_bspline() writes for a chain of `count` elements; 0 and 0
+// for none. The elements are read for corners, not checked.
 enum minvar_code minvar_bspline_len(const struct minvar_element *elements,
                                     size_t count,
                                     size_t *control_count,
                                     size_t *knot_count,
                                     struct minvar_error *error);
 
-// The whole chain as one non-rational B-spline of degree 5, the same curve point by point, C1 where the tangent is
-// continuous. Knots from 0 to 1, six-fold at the ends, four-fold at smooth joints, five-fold at corners.
+// The whole chain as one non-rational B-spline of degree 5: the same curve point by point, C1 where the tangent is
+// continuous. Knots from 0 to 1, six-fold at the ends, four-fold at smooth joints, five-fold at corners; a closed
+// chain gives a spline whose ends meet.
 //
-// `controls` receives control points x, y, z, `knots` six more knots than control points; the lengths are the room, at
-// least what minvar_bspline_len() says.
+// `controls` receives control points x, y, z in the caller's unit of length, `knots` six more knots than there are
+// control points. `controls_len` and `knots_len` are the room in entries (points, knots), at least what
+// minvar_bspline_len() says; entries beyond that are left alone. The arrays must not overlap.
 //
-// Errors: MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_IRREGULAR, MINVAR_RESULT_TOO_SHORT.
+// Errors: MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_RESULT_TOO_SHORT, MINVAR_IRREGULAR where an element
+// starts or ends without speed at another.
 enum minvar_code minvar_bspline(const struct minvar_element *elements,
                                 size_t count,
                                 double (*controls)[3],
@@ -446,17 +461,15 @@ enum minvar_code minvar_bspline(const struct minvar_element *elements,
 // The options' defaults, named at each field of minvar_options.
 struct minvar_options minvar_options_defaults(void);
 
-// A G2 joint at a fixed point with free tangent and curvature.
+// A G2 joint at the fixed point x, y, z with free tangent and curvature. This and the three functions that follow only
+// fill in a struct: their arguments are checked by the functions that take the joints.
 struct minvar_joint minvar_joint_at(double x, double y, double z);
 
-// The same joint with this tangent on both sides. `given`: one of enum minvar_given.
-struct minvar_joint minvar_joint_with_tangent(struct minvar_joint joint,
-                                              uint32_t given,
-                                              double x,
-                                              double y,
-                                              double z);
+// The same joint with the tangent x, y, z, of any length but zero, on both sides. `given`: one of enum minvar_given.
+struct minvar_joint minvar_joint_with_tangent(struct minvar_joint joint, uint32_t given, double x, double y, double z);
 
-// The same joint with this curvature vector on both sides. `given`: one of enum minvar_given.
+// The same joint with the curvature vector x, y, z, in 1/length towards the centre of curvature, on both sides.
+// `given`: one of enum minvar_given.
 struct minvar_joint minvar_joint_with_curvature(struct minvar_joint joint,
                                                 uint32_t given,
                                                 double x,
@@ -466,11 +479,13 @@ struct minvar_joint minvar_joint_with_curvature(struct minvar_joint joint,
 // The same joint with another continuity: one of enum minvar_continuity.
 struct minvar_joint minvar_joint_with_continuity(struct minvar_joint joint, uint32_t continuity);
 
-// The number of elements that a curve will have: spans times elements_per_span. 0 if a pointer is NULL.
+// The number of elements that a curve will have: spans times `elements_per_span`, with one span fewer than joints of
+// an open curve and as many as joints of a closed one. Data and options are not checked otherwise; 0 if a pointer is
+// NULL or misaligned.
 size_t minvar_curve_elements_len(const struct minvar_curve *curve, const struct minvar_options *options);
 
-// The workspace, in doubles, that minvar_curve_solve() needs for these data and options. It depends on the number of
-// joints, on what is fixed at them and on whether they lie in a plane, not on the numbers otherwise.
+// The workspace, in doubles, that minvar_curve_solve() needs for these data and options. It depends on the options, on
+// the number of joints, on what is given there and on whether the data lie in a plane, not on the numbers otherwise.
 //
 // Errors: all that minvar_curve_solve() finds wrong with the data and options.
 enum minvar_code minvar_curve_workspace_len(const struct minvar_curve *curve,
@@ -480,14 +495,18 @@ enum minvar_code minvar_curve_workspace_len(const struct minvar_curve *curve,
 
 // Computes a curve (thesis chapter 4).
 //
-// `workspace`: `workspace_len` doubles, at least what minvar_curve_workspace_len() says, in any condition. `observer`
-// may be NULL. `elements` receives minvar_curve_elements_len() elements in order along the curve; `elements_len` is the
-// room. `records` (may be NULL with `records_len` 0) receives a record an iteration as far as it reaches. Fixed
-// positions and tangent directions are kept exactly; planar data give a curve in their plane. The arrays must not
-// overlap.
+// `workspace`: `workspace_len` doubles, at least what minvar_curve_workspace_len() says, in any condition; what is left
+// in it afterwards means nothing. `observer` may be NULL. `elements` receives minvar_curve_elements_len() elements in
+// order along the curve; `elements_len` is the room. `records` (may be NULL with `records_len` 0) receives a record an
+// iteration as far as it reaches. What lies beyond in either array is left alone. The arrays must not overlap.
 //
-// Errors: whatever is wrong with data, options or memory, found before any work; elements and report are untouched
-// then. A curve that did not converge is no error: see `report->status`.
+// Fixed positions and tangent directions are kept exactly; planar data give a curve in their plane.
+//
+// A curve that did not converge is no error: `report->status` says how the computation ended, and elements and report
+// hold the best curve that was found.
+//
+// Errors: MINVAR_TOO_FEW_JOINTS to MINVAR_RESULT_TOO_SHORT, whatever is wrong with data, options or memory. All are
+// found before any work: elements, records and report are untouched then.
 enum minvar_code minvar_curve_solve(const struct minvar_curve *curve,
                                     const struct minvar_options *options,
                                     double *workspace,
@@ -501,7 +520,8 @@ enum minvar_code minvar_curve_solve(const struct minvar_curve *curve,
                                     struct minvar_report *report,
                                     struct minvar_error *error);
 
-// Measures a chain of `count` elements.
+// Measures a chain of `count` elements. Length, V and E are sums over the elements by a 32-point rule: what happens
+// between two of them (a jump of curvature at a G1 joint) does not count.
 //
 // Errors: MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_IRREGULAR.
 enum minvar_code minvar_measure(const struct minvar_element *elements,
@@ -511,7 +531,8 @@ enum minvar_code minvar_measure(const struct minvar_element *elements,
 
 // What holds at parameter `t`, 0 to 1, of element `element`, from 0.
 //
-// Errors: MINVAR_OUT_OF_RANGE, MINVAR_IRREGULAR, MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE.
+// Errors: MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_OUT_OF_RANGE for `element` or `t` (NaN too),
+// MINVAR_IRREGULAR where the curve has no tangent there.
 enum minvar_code minvar_point_at(const struct minvar_element *elements,
                                  size_t count,
                                  size_t element,
@@ -519,9 +540,11 @@ enum minvar_code minvar_point_at(const struct minvar_element *elements,
                                  struct minvar_point *point,
                                  struct minvar_error *error);
 
-// What holds at arc length `s` from the start, 0 to the length of the chain.
+// What holds at arc length `s` from the start, 0 to the length of the chain; beyond either end by rounding (1e-9 of
+// the length) is taken as that end. The start of an element rather than the end of the one before.
 //
-// Errors: as minvar_point_at().
+// Errors: MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_OUT_OF_RANGE for `s` (NaN too), MINVAR_IRREGULAR where
+// the curve has no tangent there.
 enum minvar_code minvar_point_at_length(const struct minvar_element *elements,
                                         size_t count,
                                         double s,
@@ -531,7 +554,8 @@ enum minvar_code minvar_point_at_length(const struct minvar_element *elements,
 // The place of a chain that is nearest to the point x, y, z; of several equally near ones the first. No place is
 // missed: it is found from the roots of a polynomial.
 //
-// Errors: as minvar_point_at().
+// Errors: MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_OUT_OF_RANGE if x, y or z is NaN or infinite,
+// MINVAR_IRREGULAR where the curve has no tangent at the nearest place.
 enum minvar_code minvar_closest_point(const struct minvar_element *elements,
                                       size_t count,
                                       double x,
@@ -541,7 +565,7 @@ enum minvar_code minvar_closest_point(const struct minvar_element *elements,
                                       struct minvar_error *error);
 
 // Calls `visit` with the chords of a chain, each within `tolerance` (a length) of its part: as few as a greedy choice
-// makes.
+// makes. The first one begins where the chain does, at C(0) of element 0; every corner of the chain is the end of one.
 //
 // Errors: MINVAR_BAD_TOLERANCE, MINVAR_TOLERANCE_TOO_FINE, MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_GAP,
 // all before the first move; MINVAR_STOPPED if the visitor stopped.
@@ -552,8 +576,9 @@ enum minvar_code minvar_chords(const struct minvar_element *elements,
                                void *context,
                                struct minvar_error *error);
 
-// Calls `visit` with tangent-continuous arcs and lines within `tolerance` (a length) of a chain in a plane z =
-// constant: each biarc the longest that can be proven.
+// Calls `visit` with arcs and lines within `tolerance` (a length) of a chain in a plane z = constant: each biarc the
+// longest that can be proven. They continue each other's tangent but for the corners of the chain. The first one begins
+// where the chain does, at C(0) of element 0.
 //
 // Errors: as minvar_chords(), and MINVAR_PATH_NOT_PLANAR, MINVAR_IRREGULAR.
 enum minvar_code minvar_arcs(const struct minvar_element *elements,
@@ -563,16 +588,18 @@ enum minvar_code minvar_arcs(const struct minvar_element *elements,
                              void *context,
                              struct minvar_error *error);
 
-// The defaults named at each field, with the three that have none.
+// The defaults named at each field, with the three that have none: tolerance and safe height are lengths, the feed is
+// length/minute. Only fills in a struct: minvar_write_gcode() checks it.
 struct minvar_gcode_options minvar_gcode_defaults(double tolerance, double feed, double safe_height);
 
 // Writes a chain as one complete G-code program through `write`. The same input gives the same bytes on every machine.
 //
 // The lines: unit, plane, G90, G91.1, G94, G40, G80; rapid to the safe height and to the start; plunge; the cut at the
-// feed; rapid to the safe height; M2. `summary` may be NULL.
+// feed; rapid to the safe height; M2. Each ends with `\n`. `summary` may be NULL.
 //
-// Errors: all but MINVAR_STOPPED are found before the first character: the codes from 40 on, and MINVAR_BAD_OPTION for
-// an unknown unit, plane or motion (`index`: 0, 1, 2).
+// Errors: those of minvar_arcs() or, with MINVAR_CHORDS, of minvar_chords(); MINVAR_BAD_OPTION for an unknown unit,
+// plane or motion; MINVAR_BAD_DECIMALS to MINVAR_COORDINATE_TOO_LARGE. All are found before the first character;
+// only MINVAR_STOPPED, where `write` stopped, leaves part of a program behind.
 enum minvar_code minvar_write_gcode(const struct minvar_element *elements,
                                     size_t count,
                                     const struct minvar_gcode_options *options,

@@ -72,12 +72,7 @@ pub(crate) struct CurveArguments {
     pub(crate) svg: Option<PathBuf>,
 
     /// Write an NC path (G-code)
-    #[arg(
-        long,
-        value_name = "OUT",
-        requires_all = ["feed", "safe_height"],
-        help_heading = "Outputs (`-` is the standard output)"
-    )]
+    #[arg(long, value_name = "OUT", help_heading = "Outputs (`-` is the standard output)")]
     pub(crate) nc: Option<PathBuf>,
 
     /// Write samples: position, tangent, curvature vector, curvature, torsion and change of curvature
@@ -87,6 +82,17 @@ pub(crate) struct CurveArguments {
     /// Write the figures and the elements' rows C(0), C'(0), C''(0), C''(1), C'(1), C(1)
     #[arg(long, value_name = "OUT", help_heading = "Outputs (`-` is the standard output)")]
     pub(crate) json: Option<PathBuf>,
+
+    /// Draw a polygon beneath the curve: what it must keep clear of, say; may be given several times
+    #[arg(
+        long,
+        value_name = "X,Y X,Y …",
+        requires = "svg",
+        allow_hyphen_values = true,
+        value_parser = polygon,
+        help_heading = "Outputs (`-` is the standard output)"
+    )]
+    pub(crate) polygon: Vec<Polygon>,
 
     /// Samples an element in the CSV file, both ends among them
     #[arg(
@@ -103,15 +109,41 @@ pub(crate) struct CurveArguments {
     pub(crate) path: PathArguments,
 }
 
+/// A polygon of a picture, in the curve's coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Polygon(pub(crate) Vec<[f64; 3]>);
+
+/// `--polygon "0,0 6,0 6,-6 0,-6"`
+fn polygon(text: &str) -> Result<Polygon, String> {
+    let number = |word: &str| {
+        let value: f64 = word.parse().map_err(|_| format!("`{word}` is not a number"))?;
+        if value.is_finite() { Ok(value) } else { Err(format!("`{word}` is not finite")) }
+    };
+    let point = |word: &str| match word.split(',').collect::<Vec<_>>()[..] {
+        [x, y] => Ok([number(x)?, number(y)?, 0.0]),
+        [x, y, z] => Ok([number(x)?, number(y)?, number(z)?]),
+        _ => Err(format!("`{word}` is not a point `x,y`")),
+    };
+    let corners = text.split_whitespace().map(point).collect::<Result<Vec<_>, String>>()?;
+    if corners.len() < 2 { Err("a polygon needs two points or more".into()) } else { Ok(Polygon(corners)) }
+}
+
 /// The NC path's options; lengths in the curve's own unit.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "NC path (lengths in the curve's unit)")]
 pub(crate) struct PathArguments {
     /// The greatest distance between path and curve
-    #[arg(long, default_value_t = 0.01, value_name = "LENGTH", requires = "nc")]
+    #[arg(
+        long = "path-tolerance",
+        visible_alias = "tolerance",
+        default_value_t = 0.01,
+        value_name = "LENGTH",
+        requires = "nc",
+        allow_negative_numbers = true
+    )]
     pub(crate) tolerance: f64,
 
-    /// The cutting feed, length a minute
+    /// The cutting feed, length a minute [default: 600 mm or 24 inches]
     #[arg(long, value_name = "FEED", requires = "nc")]
     pub(crate) feed: Option<f64>,
 
@@ -119,7 +151,7 @@ pub(crate) struct PathArguments {
     #[arg(long, value_name = "FEED", requires = "nc")]
     pub(crate) plunge_feed: Option<f64>,
 
-    /// The height of rapid moves: above the cut and everything else
+    /// The height of rapid moves: above the cut and everything else [default: 5 mm or 0.2 inches above the cut]
     #[arg(long, value_name = "LENGTH", requires = "nc", allow_negative_numbers = true)]
     pub(crate) safe_height: Option<f64>,
 
@@ -209,22 +241,25 @@ mod tests {
     }
 
     #[test]
-    fn a_path_needs_a_feed_and_a_safe_height() {
-        for line in [
-            "minvar curve a --nc b",
-            "minvar curve a --nc b --feed 100",
-            "minvar curve a --nc - --safe-height 5",
-        ] {
-            let error = parse(line).expect_err(line);
-            assert_eq!(error.kind(), ErrorKind::MissingRequiredArgument, "{line}");
-            assert_eq!(error.exit_code(), 2);
-        }
+    fn a_path_takes_its_options_and_has_defaults() {
+        let path = parse("minvar curve a --nc b").expect("complete").path;
+        assert_eq!((path.feed, path.safe_height, path.depth, path.tolerance), (None, None, 0.0, 0.01));
         let path =
             parse("minvar curve a --nc b --feed 100 --safe-height 5 --depth -1.5").expect("complete").path;
         assert_eq!(
             (path.feed, path.safe_height, path.depth, path.tolerance),
             (Some(100.0), Some(5.0), -1.5, 0.01)
         );
+    }
+
+    #[test]
+    fn a_polygon_is_read_point_by_point() {
+        let found = parse("minvar curve a --svg b").expect("complete");
+        assert!(found.polygon.is_empty());
+        assert_eq!(polygon("0,0 6,-6"), Ok(Polygon(vec![[0.0; 3], [6.0, -6.0, 0.0]])));
+        assert_eq!(polygon("0,0 6,x"), Err("`x` is not a number".into()));
+        assert_eq!(polygon("0,0 6"), Err("`6` is not a point `x,y`".into()));
+        assert!(polygon("1,1").is_err() && polygon("0,0 inf,1").is_err());
     }
 
     #[test]

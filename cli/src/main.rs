@@ -93,8 +93,19 @@ fn curve(arguments: &CurveArguments) -> Result<Status, Failure> {
     if solution.status != Status::Converged {
         complain(&format!("warning: {}", solution.status.sentence()));
     }
+    let off = (solution.fine_value - solution.value).abs();
+    if off > TRUSTED * solution.value.abs() + f64::MIN_POSITIVE {
+        complain(&format!(
+            "warning: a finer quadrature gives {} for the functional: the curve is too wild for its elements, try more \
+             of them (--elements-per-span)",
+            rounded(solution.fine_value, 10)
+        ));
+    }
     Ok(solution.status)
 }
+
+/// The functional is trusted if a finer quadrature confirms it to this fraction.
+const TRUSTED: f64 = 1e-4;
 
 /// No two outputs in one place, and none in the input's.
 fn check_targets(arguments: &CurveArguments, targets: &[(&'static str, Target)]) -> Result<(), Failure> {
@@ -134,7 +145,7 @@ fn outputs(
     let mut prepared = Vec::new();
     for (option, target) in targets {
         let content = match *option {
-            "--svg" => svg(specification, options, solution),
+            "--svg" => svg(arguments, specification, options, solution),
             "--csv" => tables::csv(&Trace::new(&solution.elements, arguments.samples as usize)),
             "--json" => tables::json(specification, options, solution)
                 .map_err(|message| Failure::Output(format!("error: {message}")))?,
@@ -189,7 +200,16 @@ fn rounded(value: f64, digits: usize) -> String {
     text.parse::<f64>().map_or(text, |value| format!("{value:?}"))
 }
 
-fn svg(specification: &Specification, options: &Options, solution: &Solution) -> String {
+fn svg(
+    arguments: &CurveArguments,
+    specification: &Specification,
+    options: &Options,
+    solution: &Solution,
+) -> String {
+    // A file is usually named after its curve, and the curve `test`.
+    let stem = arguments.file.file_stem().map(|stem| stem.to_string_lossy().replace('_', " "));
+    let title = stem.filter(|_| !arguments.reads_stdin()).unwrap_or_else(|| specification.name.clone());
+    let obstacles: Vec<_> = arguments.polygon.iter().map(|polygon| polygon.0.clone()).collect();
     let functional = match solution.functional {
         solve::Functional::Mvc => "MVC  ∫ (dκ/ds)² ds",
         solve::Functional::Mec => "MEC  ∫ κ² ds",
@@ -205,11 +225,11 @@ fn svg(specification: &Specification, options: &Options, solution: &Solution) ->
         lines.push(format!("Not converged: {}", solution.status.name()));
     }
     picture::svg(&Picture {
-        title: &specification.name,
+        title: &title,
         figures: &lines,
         elements: &solution.elements,
         closed: specification.closed,
         joints: &Mark::of(specification, options.elements_per_span as usize),
-        obstacles: &[],
+        obstacles: &obstacles,
     })
 }

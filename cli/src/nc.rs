@@ -1,11 +1,17 @@
 //! The NC path: the command's options in the kernel's words.
 
 use crate::arguments::{MachinePlane, PathArguments, Units};
-use minvar::curve::Element;
+use minvar::curve::{Element, measure};
 use minvar::toolpath::{self, GcodeOptions, Motion, Plane, Summary};
 
 /// The program's text and what it does, or the option's fault.
 pub(crate) fn program(elements: &[Element], arguments: &PathArguments) -> Result<(String, Summary), String> {
+    // What is usual for foam and wood, in the program's unit.
+    let (feed, clearance) = match arguments.units {
+        Units::Mm => (600.0, 5.0),
+        Units::Inch => (24.0, 0.2),
+    };
+    let top = measure::bounding_box(elements).map_or(0.0, |[_, high]| high[2]);
     let options = GcodeOptions {
         units: match arguments.units {
             Units::Mm => toolpath::Units::Millimetres,
@@ -23,8 +29,8 @@ pub(crate) fn program(elements: &[Element], arguments: &PathArguments) -> Result
         comments: arguments.comments,
         ..GcodeOptions::new(
             arguments.tolerance,
-            arguments.feed.ok_or("--nc needs --feed")?,
-            arguments.safe_height.ok_or("--nc needs --safe-height")?,
+            arguments.feed.unwrap_or(feed),
+            arguments.safe_height.unwrap_or(top + arguments.depth + clearance),
         )
     };
     let mut text = String::new();

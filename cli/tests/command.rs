@@ -46,7 +46,11 @@ fn a_missing_file_a_folder_and_a_wrong_option_are_exit_code_2() {
     assert_eq!((code, error.as_str()), (2, "error: cannot read none.mvc: no such file or directory\n"));
     assert_eq!(run(minvar(folder.path()).arg(".")).0, 2);
     assert_eq!(run(minvar(folder.path()).args([WICKET, "--frobnicate"])).0, 2);
-    assert_eq!(run(minvar(folder.path()).args([WICKET, "--nc", "a.ngc"])).0, 2);
+    for option in [["--path-tolerance", "0"], ["--feed", "0"], ["--safe-height", "-1"]] {
+        let (code, _, error) = run(minvar(folder.path()).args([WICKET, "--nc", "a.ngc"]).args(option));
+        assert!(code == 2 && error.starts_with("error: no NC path: the "), "{option:?}: {code} {error}");
+    }
+    assert!(names(folder.path()).is_empty(), "nothing is written");
 }
 
 #[test]

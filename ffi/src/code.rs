@@ -2,7 +2,7 @@
 
 use core::ffi::c_char;
 use core::fmt::{self, Write};
-use kernel::curve::{CurveError, MeasureError};
+use kernel::curve::{CurveError, MeasureError, OptionName};
 use kernel::solve::Status;
 use kernel::toolpath::{GcodeError, PathError};
 
@@ -13,11 +13,12 @@ use kernel::toolpath::{GcodeError, PathError};
 pub enum minvar_code {
     /// Nothing: the call did what it says.
     MINVAR_OK = 0,
-    /// A pointer is NULL that must not be.
+    /// A pointer is NULL that must not be; the message names the argument.
     MINVAR_NULL_POINTER = 1,
-    /// A pointer is not aligned for its type.
+    /// A pointer is not aligned for its type; the message names the argument. Where it is the error's own pointer, there
+    /// is no message.
     MINVAR_MISALIGNED = 2,
-    /// A length is larger than memory can be.
+    /// An array is longer than memory can be; the message names the argument.
     MINVAR_TOO_LONG = 3,
     /// An open curve has fewer than two joints. `needed`, `given`.
     MINVAR_TOO_FEW_JOINTS = 10,
@@ -25,13 +26,13 @@ pub enum minvar_code {
     MINVAR_CLOSED_TOO_FEW_JOINTS = 11,
     /// A number of a joint is NaN or infinite. `index`: the joint.
     MINVAR_JOINT_NOT_FINITE = 12,
-    /// A status or continuity of a joint is not one of the constants. `index`: the joint.
+    /// A `given` or the `continuity` of a joint is not one of the constants. `index`: the joint.
     MINVAR_UNKNOWN_CODE = 13,
-    /// Two neighbouring joints coincide. `index`: the first of them.
+    /// Two neighbouring joints are at the same point, to 1e-12 of the data's extent. `index`: the first of them.
     MINVAR_COINCIDENT_JOINTS = 14,
     /// A given tangent is the zero vector. `index`: the joint.
     MINVAR_ZERO_TANGENT = 15,
-    /// A given curvature is not perpendicular to the given tangent. `index`: the joint.
+    /// A given curvature is not perpendicular to the given tangent, to 1e-6 of its length. `index`: the joint.
     MINVAR_CURVATURE_NOT_PERPENDICULAR = 16,
     /// A curvature is given where the direction of the curve is unknown. `index`: the joint.
     MINVAR_CURVATURE_NEEDS_TANGENT = 17,
@@ -39,62 +40,65 @@ pub enum minvar_code {
     MINVAR_SIDES_DIFFER = 18,
     /// Fewer than two joints have positions.
     MINVAR_NO_POSITION = 19,
-    /// Lengths beyond 1e-90 to 1e90.
+    /// The data are too large or too small for the arithmetic: lengths must be from 1e-90 to 1e90.
     MINVAR_SIZE_OUT_OF_RANGE = 20,
     /// A planar curve was asked for but the data do not lie in a plane.
     MINVAR_NOT_PLANAR = 21,
-    /// An option has a value that it cannot have; the message names it.
+    /// An option has a value that it cannot have; the message names it. `index`: its place among the fields of the
+    /// options, from 0.
     MINVAR_BAD_OPTION = 22,
     /// The workspace is too short. `needed`, `given`, in doubles.
     MINVAR_WORKSPACE_TOO_SMALL = 23,
-    /// An array for results is too short. `needed`, `given`, in its entries.
+    /// An array for results is too short; the message names it. `needed`, `given`, in its entries.
     MINVAR_RESULT_TOO_SHORT = 24,
     /// There are no elements.
     MINVAR_NO_ELEMENTS = 40,
-    /// A number of an element is NaN, infinite or too large. `index`: the element.
+    /// A number of an element is NaN, infinite or (in paths) beyond 1e100. `index`: the element.
     MINVAR_ELEMENT_NOT_FINITE = 41,
     /// An element has no tangent somewhere: its derivative vanishes. `index`: the element.
     MINVAR_IRREGULAR = 42,
-    /// The place is not on the curve.
+    /// An element, parameter, arc length or point that a place is asked for by is NaN or beyond the curve; the message
+    /// says what it may be.
     MINVAR_OUT_OF_RANGE = 43,
-    /// The tolerance is zero, negative or not finite.
+    /// The tolerance is zero, negative, NaN or infinite.
     MINVAR_BAD_TOLERANCE = 60,
     /// The tolerance is finer than the numbers allow; the message says how fine it can be.
     MINVAR_TOLERANCE_TOO_FINE = 61,
-    /// An element does not begin where the one before ends. `index`: the later element.
+    /// An element does not begin where the one before ends, to a thousandth of the tolerance. `index`: the later element.
     MINVAR_GAP = 62,
     /// An element leaves the plane z = constant, which arcs need. `index`: the element.
     MINVAR_PATH_NOT_PLANAR = 63,
     /// The number of decimals is not 6 to 9.
     MINVAR_BAD_DECIMALS = 70,
-    /// The feed is not positive and finite.
+    /// The feed is not positive and finite, or rounds to zero.
     MINVAR_BAD_FEED = 71,
-    /// The plunge feed is not positive and finite.
+    /// The plunge feed is not positive and finite, or rounds to zero.
     MINVAR_BAD_PLUNGE_FEED = 72,
-    /// The depth is not finite or too large.
+    /// The depth is not finite or too large for the decimals.
     MINVAR_BAD_DEPTH = 73,
-    /// The safe height is not above the cut.
+    /// The safe height is not above the cut, not finite or too large; the message says how high the cut reaches.
     MINVAR_BAD_SAFE_HEIGHT = 74,
     /// A coordinate is too large for the decimals. `index`: the element.
     MINVAR_COORDINATE_TOO_LARGE = 75,
-    /// The caller's writer or visitor asked to stop: what was written is incomplete.
+    /// The caller's writer or visitor asked to stop: what it got is incomplete. Other results are untouched.
     MINVAR_STOPPED = 76,
 }
 
 use minvar_code::*;
 
-/// An error with what it is about. Passed as the last argument, it may be NULL if nobody wants to know.
+/// An error with what it is about. The last argument of every function that can fail; it may be NULL if nobody wants to
+/// know. Every call fills it: after a success with MINVAR_OK and "no error".
 #[repr(C)]
 pub struct minvar_error {
     /// The code, as returned.
     pub code: minvar_code,
-    /// The joint, element or option that is to blame, where the code says so; else 0.
+    /// The joint, element or option, from 0, that is to blame, where the code says so; else 0.
     pub index: usize,
-    /// The length that is needed, where the code says so; else 0.
+    /// How many entries are needed, where the code says so; else 0.
     pub needed: usize,
-    /// The length that was given, where the code says so; else 0.
+    /// How many were given, where the code says so; else 0.
     pub given: usize,
-    /// One sentence in English, NUL-terminated, that names the culprit.
+    /// One sentence in English, ASCII, NUL-terminated, that names the culprit. Its words may change; the codes do not.
     pub message: [c_char; 192],
 }
 
@@ -130,9 +134,10 @@ impl From<Status> for minvar_status {
     }
 }
 
-/// One English sentence on a status that a user can act on; static. A number that is no status gives "unknown status".
+/// One English sentence on a status (of enum minvar_status) that a user can act on; static: not to be freed. A number
+/// that is no status gives "unknown status".
 #[unsafe(no_mangle)]
-pub extern "C" fn minvar_status_sentence(status: i32) -> *const c_char {
+pub extern "C" fn minvar_status_sentence(status: u32) -> *const c_char {
     let sentence = match status {
         0 => c"nothing was computed",
         1 => c"converged: the functional cannot be lowered by what the tolerance asks for",
@@ -147,16 +152,182 @@ pub extern "C" fn minvar_status_sentence(status: i32) -> *const c_char {
     sentence.as_ptr()
 }
 
-/// A failed call on its way to the caller.
-pub(crate) struct Failure {
-    pub(crate) code: minvar_code,
-    pub(crate) index: usize,
-    pub(crate) needed: usize,
-    pub(crate) given: usize,
-    message: Message,
+/// What this boundary itself finds wrong. Names are the header's.
+pub(crate) enum Failure {
+    /// A pointer that cannot be used.
+    Argument { code: minvar_code, name: &'static str },
+    /// An option that is not one of the constants, by its place among the fields of the struct.
+    Option { field: usize, rule: &'static str },
+    /// A place that is not on the curve, and what it may be.
+    Place { rule: &'static str },
+    /// An array for results that is too short.
+    TooShort { name: &'static str, needed: usize, given: usize },
+    /// The visitor stopped.
+    Stopped,
 }
 
-/// A sentence cut to what fits into [`minvar_error`].
+/// Why a call failed: this boundary or the kernel, whose error is a type of its own so that a program links the
+/// sentences of what it calls and no others.
+pub(crate) enum Refusal<E> {
+    Boundary(Failure),
+    Kernel(E),
+}
+
+impl<E> From<Failure> for Refusal<E> {
+    fn from(failure: Failure) -> Self {
+        Self::Boundary(failure)
+    }
+}
+
+macro_rules! from_kernel {
+    ($($error:ty),*) => {
+        $(impl From<$error> for Refusal<$error> {
+            fn from(error: $error) -> Self {
+                Self::Kernel(error)
+            }
+        })*
+    };
+}
+
+from_kernel!(CurveError, MeasureError, PathError, GcodeError);
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Argument { code, name } => {
+                let wrong = match code {
+                    MINVAR_NULL_POINTER => "is NULL",
+                    MINVAR_MISALIGNED => "is not aligned for its type",
+                    _ => "is longer than memory can be",
+                };
+                write!(f, "argument {name} {wrong}")
+            }
+            Self::Option { rule, .. } => write!(f, "option {rule}"),
+            Self::Place { rule } => f.write_str(rule),
+            Self::TooShort { name, needed, given } => {
+                write!(f, "argument {name} needs room for {needed} entries; {given} given")
+            }
+            Self::Stopped => f.write_str("the visitor asked to stop: the path is incomplete"),
+        }
+    }
+}
+
+/// A code and the numbers that go with it.
+pub(crate) struct Verdict {
+    code: minvar_code,
+    index: usize,
+    needed: usize,
+    given: usize,
+}
+
+impl Verdict {
+    const fn new(code: minvar_code) -> Self {
+        Self::at(code, 0)
+    }
+
+    const fn at(code: minvar_code, index: usize) -> Self {
+        Self { code, index, needed: 0, given: 0 }
+    }
+
+    const fn short(code: minvar_code, needed: usize, given: usize) -> Self {
+        Self { code, index: 0, needed, given }
+    }
+}
+
+impl From<&Failure> for Verdict {
+    fn from(failure: &Failure) -> Self {
+        match *failure {
+            Failure::Argument { code, .. } => Self::new(code),
+            Failure::Option { field, .. } => Self::at(MINVAR_BAD_OPTION, field),
+            Failure::Place { .. } => Self::new(MINVAR_OUT_OF_RANGE),
+            Failure::TooShort { needed, given, .. } => Self::short(MINVAR_RESULT_TOO_SHORT, needed, given),
+            Failure::Stopped => Self::new(MINVAR_STOPPED),
+        }
+    }
+}
+
+impl From<&CurveError> for Verdict {
+    fn from(error: &CurveError) -> Self {
+        match *error {
+            CurveError::TooFewJoints { given } => Self::short(MINVAR_TOO_FEW_JOINTS, 2, given),
+            CurveError::ClosedTooFewJoints { given } => Self::short(MINVAR_CLOSED_TOO_FEW_JOINTS, 3, given),
+            CurveError::NotFinite { joint, .. } => Self::at(MINVAR_JOINT_NOT_FINITE, joint),
+            CurveError::UnknownCode { joint, .. } => Self::at(MINVAR_UNKNOWN_CODE, joint),
+            CurveError::CoincidentJoints { joint, .. } => Self::at(MINVAR_COINCIDENT_JOINTS, joint),
+            CurveError::ZeroTangent { joint } => Self::at(MINVAR_ZERO_TANGENT, joint),
+            CurveError::CurvatureNotPerpendicular { joint } => {
+                Self::at(MINVAR_CURVATURE_NOT_PERPENDICULAR, joint)
+            }
+            CurveError::CurvatureNeedsTangent { joint } => Self::at(MINVAR_CURVATURE_NEEDS_TANGENT, joint),
+            CurveError::SidesDiffer { joint, .. } => Self::at(MINVAR_SIDES_DIFFER, joint),
+            CurveError::NoPosition => Self::new(MINVAR_NO_POSITION),
+            CurveError::SizeOutOfRange => Self::new(MINVAR_SIZE_OUT_OF_RANGE),
+            CurveError::NotPlanar => Self::new(MINVAR_NOT_PLANAR),
+            CurveError::BadOption(option) => Self::at(MINVAR_BAD_OPTION, field_of(option)),
+            CurveError::WorkspaceTooSmall { needed, given } => {
+                Self::short(MINVAR_WORKSPACE_TOO_SMALL, needed, given)
+            }
+            CurveError::ElementsTooShort { needed, given } => {
+                Self::short(MINVAR_RESULT_TOO_SHORT, needed, given)
+            }
+        }
+    }
+}
+
+impl From<&MeasureError> for Verdict {
+    fn from(error: &MeasureError) -> Self {
+        match *error {
+            MeasureError::NoElements => Self::new(MINVAR_NO_ELEMENTS),
+            MeasureError::NotFinite { element } => Self::at(MINVAR_ELEMENT_NOT_FINITE, element),
+            MeasureError::Irregular { element } => Self::at(MINVAR_IRREGULAR, element),
+            MeasureError::OutOfRange => Self::new(MINVAR_OUT_OF_RANGE),
+            MeasureError::TooShort { needed, given } => Self::short(MINVAR_RESULT_TOO_SHORT, needed, given),
+        }
+    }
+}
+
+impl From<&PathError> for Verdict {
+    fn from(error: &PathError) -> Self {
+        match *error {
+            PathError::NoElements => Self::new(MINVAR_NO_ELEMENTS),
+            PathError::Tolerance => Self::new(MINVAR_BAD_TOLERANCE),
+            PathError::ToleranceTooFine { .. } => Self::new(MINVAR_TOLERANCE_TOO_FINE),
+            PathError::NotFinite { element } => Self::at(MINVAR_ELEMENT_NOT_FINITE, element),
+            PathError::Gap { element } => Self::at(MINVAR_GAP, element),
+            PathError::NotPlanar { element } => Self::at(MINVAR_PATH_NOT_PLANAR, element),
+            PathError::Irregular { element } => Self::at(MINVAR_IRREGULAR, element),
+        }
+    }
+}
+
+impl From<&GcodeError> for Verdict {
+    fn from(error: &GcodeError) -> Self {
+        match *error {
+            GcodeError::Path(error) => Self::from(&error),
+            GcodeError::ToleranceBelowDecimals { .. } => Self::new(MINVAR_TOLERANCE_TOO_FINE),
+            GcodeError::Decimals => Self::new(MINVAR_BAD_DECIMALS),
+            GcodeError::Feed => Self::new(MINVAR_BAD_FEED),
+            GcodeError::PlungeFeed => Self::new(MINVAR_BAD_PLUNGE_FEED),
+            GcodeError::Depth => Self::new(MINVAR_BAD_DEPTH),
+            GcodeError::SafeHeight { .. } => Self::new(MINVAR_BAD_SAFE_HEIGHT),
+            GcodeError::CoordinateTooLarge { element } => Self::at(MINVAR_COORDINATE_TOO_LARGE, element),
+            GcodeError::Write => Self::new(MINVAR_STOPPED),
+        }
+    }
+}
+
+/// The place of an option among the fields of minvar_options.
+const fn field_of(option: OptionName) -> usize {
+    match option {
+        OptionName::Functional => 0,
+        OptionName::ElementsPerSpan => 1,
+        OptionName::QuadraturePoints => 2,
+        OptionName::Dimension => 4,
+        OptionName::RelativeDecrease => 5,
+    }
+}
+
+/// A sentence cut to what fits into [`minvar_error`], with the NUL that ends it.
 struct Message {
     text: [c_char; 192],
     len: usize,
@@ -174,112 +345,35 @@ impl Write for Message {
     }
 }
 
-impl Failure {
-    /// A failure that the code alone describes.
-    pub(crate) fn new(code: minvar_code) -> Self {
-        let sentence = match code {
-            MINVAR_NULL_POINTER => "a pointer is NULL that must not be",
-            MINVAR_MISALIGNED => "a pointer is not aligned for its type",
-            MINVAR_TOO_LONG => "a length is larger than memory can be",
-            MINVAR_STOPPED => "the caller's function asked to stop: what was written is incomplete",
-            _ => "the call failed",
-        };
-        Self::with(code, 0, 0, 0, &sentence)
-    }
-
-    /// An option outside its range.
-    pub(crate) fn option(index: usize, rule: &str) -> Self {
-        Self::with(MINVAR_BAD_OPTION, index, 0, 0, &format_args!("option {rule}"))
-    }
-
-    fn with(code: minvar_code, index: usize, needed: usize, given: usize, sentence: &dyn fmt::Display) -> Self {
-        let mut message = Message { text: [0; 192], len: 0 };
-        let _ = write!(message, "{sentence}");
-        Self { code, index, needed, given, message }
-    }
-}
-
-impl From<CurveError> for Failure {
-    fn from(error: CurveError) -> Self {
-        let (code, index, needed, given) = match error {
-            CurveError::TooFewJoints { given } => (MINVAR_TOO_FEW_JOINTS, 0, 2, given),
-            CurveError::ClosedTooFewJoints { given } => (MINVAR_CLOSED_TOO_FEW_JOINTS, 0, 3, given),
-            CurveError::NotFinite { joint, .. } => (MINVAR_JOINT_NOT_FINITE, joint, 0, 0),
-            CurveError::UnknownCode { joint, .. } => (MINVAR_UNKNOWN_CODE, joint, 0, 0),
-            CurveError::CoincidentJoints { joint, .. } => (MINVAR_COINCIDENT_JOINTS, joint, 0, 0),
-            CurveError::ZeroTangent { joint } => (MINVAR_ZERO_TANGENT, joint, 0, 0),
-            CurveError::CurvatureNotPerpendicular { joint } => {
-                (MINVAR_CURVATURE_NOT_PERPENDICULAR, joint, 0, 0)
-            }
-            CurveError::CurvatureNeedsTangent { joint } => (MINVAR_CURVATURE_NEEDS_TANGENT, joint, 0, 0),
-            CurveError::SidesDiffer { joint, .. } => (MINVAR_SIDES_DIFFER, joint, 0, 0),
-            CurveError::NoPosition => (MINVAR_NO_POSITION, 0, 0, 0),
-            CurveError::SizeOutOfRange => (MINVAR_SIZE_OUT_OF_RANGE, 0, 0, 0),
-            CurveError::NotPlanar => (MINVAR_NOT_PLANAR, 0, 0, 0),
-            CurveError::BadOption(option) => (MINVAR_BAD_OPTION, option as usize, 0, 0),
-            CurveError::WorkspaceTooSmall { needed, given } => (MINVAR_WORKSPACE_TOO_SMALL, 0, needed, given),
-            CurveError::ElementsTooShort { needed, given } => (MINVAR_RESULT_TOO_SHORT, 0, needed, given),
-        };
-        Self::with(code, index, needed, given, &error)
-    }
-}
-
-impl From<MeasureError> for Failure {
-    fn from(error: MeasureError) -> Self {
-        let (code, index, needed, given) = match error {
-            MeasureError::NoElements => (MINVAR_NO_ELEMENTS, 0, 0, 0),
-            MeasureError::NotFinite { element } => (MINVAR_ELEMENT_NOT_FINITE, element, 0, 0),
-            MeasureError::Irregular { element } => (MINVAR_IRREGULAR, element, 0, 0),
-            MeasureError::OutOfRange => (MINVAR_OUT_OF_RANGE, 0, 0, 0),
-            MeasureError::TooShort { needed, given } => (MINVAR_RESULT_TOO_SHORT, 0, needed, given),
-        };
-        Self::with(code, index, needed, given, &error)
-    }
-}
-
-impl From<PathError> for Failure {
-    fn from(error: PathError) -> Self {
-        let (code, index) = match error {
-            PathError::NoElements => (MINVAR_NO_ELEMENTS, 0),
-            PathError::Tolerance => (MINVAR_BAD_TOLERANCE, 0),
-            PathError::ToleranceTooFine { .. } => (MINVAR_TOLERANCE_TOO_FINE, 0),
-            PathError::NotFinite { element } => (MINVAR_ELEMENT_NOT_FINITE, element),
-            PathError::Gap { element } => (MINVAR_GAP, element),
-            PathError::NotPlanar { element } => (MINVAR_PATH_NOT_PLANAR, element),
-            PathError::Irregular { element } => (MINVAR_IRREGULAR, element),
-        };
-        Self::with(code, index, 0, 0, &error)
-    }
-}
-
-impl From<GcodeError> for Failure {
-    fn from(error: GcodeError) -> Self {
-        let (code, index) = match error {
-            GcodeError::Path(error) => return error.into(),
-            GcodeError::ToleranceBelowDecimals { .. } => (MINVAR_TOLERANCE_TOO_FINE, 0),
-            GcodeError::Decimals => (MINVAR_BAD_DECIMALS, 0),
-            GcodeError::Feed => (MINVAR_BAD_FEED, 0),
-            GcodeError::PlungeFeed => (MINVAR_BAD_PLUNGE_FEED, 0),
-            GcodeError::Depth => (MINVAR_BAD_DEPTH, 0),
-            GcodeError::SafeHeight { .. } => (MINVAR_BAD_SAFE_HEIGHT, 0),
-            GcodeError::CoordinateTooLarge { element } => (MINVAR_COORDINATE_TOO_LARGE, element),
-            GcodeError::Write => (MINVAR_STOPPED, 0),
-        };
-        Self::with(code, index, 0, 0, &error)
-    }
-}
-
-/// Ends a call: fills the error, if the caller wants it, and returns the code.
+/// Makes a call: fills the error, if the caller wants it, and returns the code.
 ///
 /// # Safety
-/// `error` is NULL or valid for writing.
-pub(crate) unsafe fn finish(result: Result<(), Failure>, error: *mut minvar_error) -> minvar_code {
-    let failure = match result {
-        Ok(()) => Failure::with(MINVAR_OK, 0, 0, 0, &"no error"),
-        Err(failure) => failure,
+/// `error` is NULL, misaligned or valid for writing.
+pub(crate) unsafe fn answer<E: fmt::Display>(
+    error: *mut minvar_error,
+    call: impl FnOnce() -> Result<(), Refusal<E>>,
+) -> minvar_code
+where
+    for<'a> Verdict: From<&'a E>,
+{
+    if !error.is_aligned() {
+        return MINVAR_MISALIGNED;
+    }
+    let result = call();
+    let verdict = match &result {
+        Ok(()) => Verdict::new(MINVAR_OK),
+        Err(Refusal::Boundary(failure)) => failure.into(),
+        Err(Refusal::Kernel(error)) => error.into(),
     };
-    let Failure { code, index, needed, given, message } = failure;
-    if !error.is_null() && error.is_aligned() {
+    let Verdict { code, index, needed, given } = verdict;
+    if !error.is_null() {
+        let mut message = Message { text: [0; 192], len: 0 };
+        // A message that is full loses its end, not the call.
+        let _ = match &result {
+            Ok(()) => message.write_str("no error"),
+            Err(Refusal::Boundary(failure)) => write!(message, "{failure}"),
+            Err(Refusal::Kernel(error)) => write!(message, "{error}"),
+        };
         // SAFETY: not NULL, aligned, and the caller promises that it can be written.
         unsafe { error.write(minvar_error { code, index, needed, given, message: message.text }) };
     }

@@ -1,9 +1,9 @@
 //! Curves: joints, options, the three calls.
 
-use crate::code::{Failure, finish, minvar_code, minvar_error, minvar_status};
-use crate::raw::{array, array_mut, put, reference, writable};
+use crate::code::{Failure, answer, minvar_code, minvar_error, minvar_status};
+use crate::raw::{Output, array, array_mut, reference};
 use core::ffi::c_void;
-use kernel::curve::{self, Curve, Element, Functional, Joint, Options};
+use kernel::curve::{self, Curve, CurveError, Element, Functional, Joint, Options};
 use kernel::solve::{Control, Observer, Record};
 
 /// Whether a quantity is the solver's to choose.
@@ -46,7 +46,7 @@ pub enum minvar_functional {
 pub struct minvar_quantity {
     /// One of enum minvar_given.
     pub given: u32,
-    /// The vector x, y, z: a position, a tangent of any length but zero, or a curvature vector.
+    /// The vector x, y, z: a position, a tangent of any length but zero, or a curvature vector in 1/length.
     pub value: [f64; 3],
 }
 
@@ -69,7 +69,7 @@ pub struct minvar_joint {
     pub curvature: [minvar_quantity; 2],
 }
 
-/// The designer's data: joints in order along the curve, owned by the caller and only read.
+/// The designer's data: joints in order along the curve, owned by the caller, only read, and only while a call lasts.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct minvar_curve {
@@ -89,7 +89,7 @@ pub struct minvar_options {
     pub functional: u32,
     /// Elements between two joints, 1 to 1024 (thesis 4.6). More approach the true curve. Default 1.
     pub elements_per_span: u32,
-    /// Gauss-Lobatto points an element, 12 to 32. Fewer than 20 can be cheated by an optimiser. Default 24.
+    /// Gauss-Lobatto points an element, 12 to 32. Fewer than 20 can be cheated by an optimiser. Default 32.
     pub quadrature_points: u32,
     /// The largest number of iterations (trial steps). Default 200.
     pub max_iterations: u32,
@@ -108,7 +108,8 @@ pub struct minvar_element {
     pub rows: [[f64; 3]; 6],
 }
 
-/// What one iteration did: one trial step, accepted or not. In the caller's units.
+/// What one iteration did: one trial step, accepted or not. `value`, `predicted`, `actual` and `gradient` in the
+/// functional's unit (1/length^3 for MVC, 1/length for MEC), `step` and `shift` without one.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct minvar_record {
@@ -126,7 +127,7 @@ pub struct minvar_record {
     pub shift: f64,
 }
 
-/// How a curve came out. All figures in the caller's units.
+/// How a curve came out. All figures in the caller's units; `value`, `fine_value` and `decrement` in the functional's.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct minvar_report {
@@ -142,14 +143,14 @@ pub struct minvar_report {
     pub unknowns: usize,
     /// The functional's value by the rule that was minimised with.
     pub value: f64,
-    /// The functional's value by a 32-point rule. Where it differs from `value` by more than rounding, the curve is too
+    /// The functional's value by a finer rule (32 points on each half). Where it differs from `value` by more than rounding, the curve is too
     /// wild for its elements: take more of them.
     pub fine_value: f64,
     /// The length L.
     pub length: f64,
-    /// The variation of curvature V, integral of (d kappa/ds)^2 ds.
+    /// The variation of curvature V, integral of (d kappa/ds)^2 ds; 1/length^3.
     pub variation: f64,
-    /// The bending energy E, integral of kappa^2 ds.
+    /// The bending energy E, integral of kappa^2 ds; 1/length.
     pub bending: f64,
     /// The largest gradient component, each times its unknown's natural size, as a fraction of the functional.
     pub gradient: f64,
@@ -157,9 +158,10 @@ pub struct minvar_report {
     pub decrement: f64,
 }
 
-/// Watches a solve: called after every iteration with its number, from 1, and its record, which lives until the
-/// function returns. Return 0 to go on, anything else to stop with MINVAR_CANCELLED and the best curve so far. It must
-/// not jump out of the call.
+/// Watches a solve: called on the solving thread after every iteration with the caller's context, the iteration's
+/// number, from 1, and its record, which lives until the function returns. Return 0 to go on, anything else to stop with
+/// MINVAR_CANCELLED and the best curve so far. It may call this library with other memory; it must return, not leave by
+/// longjmp() or an exception.
 pub type minvar_observer =
     Option<unsafe extern "C" fn(context: *mut c_void, iteration: usize, record: *const minvar_record) -> i32>;
 
@@ -190,9 +192,9 @@ same_layout!(minvar_record = Record {
 /// `curve` is NULL or as its documentation says, and stays so while the view lives.
 unsafe fn view<'a>(curve: *const minvar_curve) -> Result<Curve<'a>, Failure> {
     // SAFETY: promised by the caller.
-    let data = unsafe { reference(curve)? };
+    let data = unsafe { reference(curve, "curve")? };
     // SAFETY: promised by the caller; the layouts are the same, and the kernel's joint is numbers without invalid values.
-    let joints = unsafe { array(data.joints.cast::<Joint>(), data.joint_count)? };
+    let joints = unsafe { array(data.joints.cast::<Joint>(), data.joint_count, "curve->joints")? };
     Ok(Curve { joints, closed: data.closed != 0 })
 }
 
@@ -200,7 +202,7 @@ unsafe fn view<'a>(curve: *const minvar_curve) -> Result<Curve<'a>, Failure> {
 /// `options` is NULL or valid for reading.
 unsafe fn options_of(options: *const minvar_options) -> Result<Options, Failure> {
     // SAFETY: promised by the caller.
-    let given = unsafe { reference(options)? };
+    let given = unsafe { reference(options, "options")? };
     Ok(Options {
         functional: Functional(given.functional),
         elements_per_span: given.elements_per_span,
@@ -227,7 +229,8 @@ pub extern "C" fn minvar_options_defaults() -> minvar_options {
 
 const FREE: minvar_quantity = minvar_quantity { given: minvar_given::MINVAR_FREE as u32, value: [0.0; 3] };
 
-/// A G2 joint at a fixed point with free tangent and curvature.
+/// A G2 joint at the fixed point x, y, z with free tangent and curvature. This and the three functions that follow only
+/// fill in a struct: their arguments are checked by the functions that take the joints.
 #[unsafe(no_mangle)]
 pub extern "C" fn minvar_joint_at(x: f64, y: f64, z: f64) -> minvar_joint {
     minvar_joint {
@@ -238,13 +241,20 @@ pub extern "C" fn minvar_joint_at(x: f64, y: f64, z: f64) -> minvar_joint {
     }
 }
 
-/// The same joint with this tangent on both sides. `given`: one of enum minvar_given.
+/// The same joint with the tangent x, y, z, of any length but zero, on both sides. `given`: one of enum minvar_given.
 #[unsafe(no_mangle)]
-pub extern "C" fn minvar_joint_with_tangent(joint: minvar_joint, given: u32, x: f64, y: f64, z: f64) -> minvar_joint {
+pub extern "C" fn minvar_joint_with_tangent(
+    joint: minvar_joint,
+    given: u32,
+    x: f64,
+    y: f64,
+    z: f64,
+) -> minvar_joint {
     minvar_joint { tangent: [minvar_quantity { given, value: [x, y, z] }; 2], ..joint }
 }
 
-/// The same joint with this curvature vector on both sides. `given`: one of enum minvar_given.
+/// The same joint with the curvature vector x, y, z, in 1/length towards the centre of curvature, on both sides.
+/// `given`: one of enum minvar_given.
 #[unsafe(no_mangle)]
 pub extern "C" fn minvar_joint_with_curvature(
     joint: minvar_joint,
@@ -262,9 +272,14 @@ pub extern "C" fn minvar_joint_with_continuity(joint: minvar_joint, continuity: 
     minvar_joint { continuity, ..joint }
 }
 
-/// The number of elements that a curve will have: spans times elements_per_span. 0 if a pointer is NULL.
+/// The number of elements that a curve will have: spans times `elements_per_span`, with one span fewer than joints of
+/// an open curve and as many as joints of a closed one. Data and options are not checked otherwise; 0 if a pointer is
+/// NULL or misaligned.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn minvar_curve_elements_len(curve: *const minvar_curve, options: *const minvar_options) -> usize {
+pub unsafe extern "C" fn minvar_curve_elements_len(
+    curve: *const minvar_curve,
+    options: *const minvar_options,
+) -> usize {
     // SAFETY: promised by the caller.
     match unsafe { (view(curve), options_of(options)) } {
         (Ok(curve), Ok(options)) => curve::elements_len(&curve, &options),
@@ -272,8 +287,8 @@ pub unsafe extern "C" fn minvar_curve_elements_len(curve: *const minvar_curve, o
     }
 }
 
-/// The workspace, in doubles, that minvar_curve_solve() needs for these data and options. It depends on the number of
-/// joints, on what is fixed at them and on whether they lie in a plane, not on the numbers otherwise.
+/// The workspace, in doubles, that minvar_curve_solve() needs for these data and options. It depends on the options, on
+/// the number of joints, on what is given there and on whether the data lie in a plane, not on the numbers otherwise.
 ///
 /// Errors: all that minvar_curve_solve() finds wrong with the data and options.
 #[unsafe(no_mangle)]
@@ -284,14 +299,14 @@ pub unsafe extern "C" fn minvar_curve_workspace_len(
     error: *mut minvar_error,
 ) -> minvar_code {
     // SAFETY: promised by the caller.
-    let result = unsafe {
-        (|| {
-            let found = curve::workspace_len(&view(curve)?, &options_of(options)?)?;
-            put(len, found)
-        })()
-    };
-    // SAFETY: promised by the caller.
-    unsafe { finish(result, error) }
+    unsafe {
+        answer::<CurveError>(error, || {
+            let (curve, options) = (view(curve)?, options_of(options)?);
+            let len = Output::new(len, "len")?;
+            len.put(curve::workspace_len(&curve, &options)?);
+            Ok(())
+        })
+    }
 }
 
 /// The caller's observer as the kernel's.
@@ -312,14 +327,18 @@ impl Observer for Watch {
 
 /// Computes a curve (thesis chapter 4).
 ///
-/// `workspace`: `workspace_len` doubles, at least what minvar_curve_workspace_len() says, in any condition. `observer`
-/// may be NULL. `elements` receives minvar_curve_elements_len() elements in order along the curve; `elements_len` is the
-/// room. `records` (may be NULL with `records_len` 0) receives a record an iteration as far as it reaches. Fixed
-/// positions and tangent directions are kept exactly; planar data give a curve in their plane. The arrays must not
-/// overlap.
+/// `workspace`: `workspace_len` doubles, at least what minvar_curve_workspace_len() says, in any condition; what is left
+/// in it afterwards means nothing. `observer` may be NULL. `elements` receives minvar_curve_elements_len() elements in
+/// order along the curve; `elements_len` is the room. `records` (may be NULL with `records_len` 0) receives a record an
+/// iteration as far as it reaches. What lies beyond in either array is left alone. The arrays must not overlap.
 ///
-/// Errors: whatever is wrong with data, options or memory, found before any work; elements and report are untouched
-/// then. A curve that did not converge is no error: see `report->status`.
+/// Fixed positions and tangent directions are kept exactly; planar data give a curve in their plane.
+///
+/// A curve that did not converge is no error: `report->status` says how the computation ended, and elements and report
+/// hold the best curve that was found.
+///
+/// Errors: MINVAR_TOO_FEW_JOINTS to MINVAR_RESULT_TOO_SHORT, whatever is wrong with data, options or memory. All are
+/// found before any work: elements, records and report are untouched then.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn minvar_curve_solve(
     curve: *const minvar_curve,
@@ -336,35 +355,31 @@ pub unsafe extern "C" fn minvar_curve_solve(
     error: *mut minvar_error,
 ) -> minvar_code {
     // SAFETY: promised by the caller; the layouts of elements and records are the same as the kernel's.
-    let result = unsafe {
-        (|| {
+    unsafe {
+        answer::<CurveError>(error, || {
             let curve = view(curve)?;
             let options = options_of(options)?;
-            let workspace = array_mut(workspace, workspace_len)?;
-            let elements = array_mut(elements.cast::<Element>(), elements_len)?;
-            let records = array_mut(records.cast::<Record>(), records_len)?;
-            writable(report)?;
+            let workspace = array_mut(workspace, workspace_len, "workspace")?;
+            let elements = array_mut(elements.cast::<Element>(), elements_len, "elements")?;
+            let records = array_mut(records.cast::<Record>(), records_len, "records")?;
+            let report = Output::new(report, "report")?;
             let mut watch = Watch { observer, context: observer_context };
             let found = curve::solve(&curve, &options, workspace, elements, records, &mut watch)?;
-            put(
-                report,
-                minvar_report {
-                    status: found.status.into(),
-                    planar: i32::from(found.planar),
-                    iterations: found.iterations,
-                    linearisations: found.linearisations,
-                    unknowns: found.unknowns,
-                    value: found.value,
-                    fine_value: found.fine_value,
-                    length: found.length,
-                    variation: found.variation,
-                    bending: found.bending,
-                    gradient: found.gradient,
-                    decrement: found.decrement,
-                },
-            )
-        })()
-    };
-    // SAFETY: promised by the caller.
-    unsafe { finish(result, error) }
+            report.put(minvar_report {
+                status: found.status.into(),
+                planar: i32::from(found.planar),
+                iterations: found.iterations,
+                linearisations: found.linearisations,
+                unknowns: found.unknowns,
+                value: found.value,
+                fine_value: found.fine_value,
+                length: found.length,
+                variation: found.variation,
+                bending: found.bending,
+                gradient: found.gradient,
+                decrement: found.decrement,
+            });
+            Ok(())
+        })
+    }
 }

@@ -12,6 +12,7 @@
 mod code;
 mod convert;
 mod curve;
+mod layout;
 mod measure;
 mod raw;
 mod toolpath;
@@ -27,7 +28,7 @@ use core::ffi::c_char;
 /// The number of this interface. It grows when something changes that compiled programs would notice.
 pub const MINVAR_ABI: u32 = 1;
 
-/// The version of the library as `"MAJOR.MINOR.PATCH"`; static.
+/// The version of the library as `"MAJOR.MINOR.PATCH"`; static: not to be freed.
 #[unsafe(no_mangle)]
 pub extern "C" fn minvar_version() -> *const c_char {
     concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()

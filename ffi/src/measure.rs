@@ -1,11 +1,11 @@
 //! Measuring a chain of elements.
 
-use crate::code::{finish, minvar_code, minvar_error};
+use crate::code::{Failure, Refusal, answer, minvar_code, minvar_error};
 use crate::curve::{minvar_element, same_layout};
-use crate::raw::{array, put};
-use kernel::curve::{CurvePoint, Element, measure};
+use crate::raw::{Output, array};
+use kernel::curve::{CurvePoint, Element, MeasureError, measure};
 
-/// What holds at a place of a chain, all in the caller's units.
+/// What holds at a place of a chain of elements, all in the caller's units.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct minvar_point {
@@ -66,9 +66,9 @@ pub struct minvar_figures {
     pub least_curvature: minvar_point,
     /// The place of the largest.
     pub largest_curvature: minvar_point,
-    /// The low corner of the bounding box.
+    /// The low corner x, y, z of the smallest box parallel to the axes that holds the chain.
     pub box_low: [f64; 3],
-    /// The high corner of the bounding box.
+    /// Its high corner.
     pub box_high: [f64; 3],
 }
 
@@ -77,12 +77,13 @@ pub struct minvar_figures {
 pub(crate) unsafe fn elements_of<'a>(
     elements: *const minvar_element,
     count: usize,
-) -> Result<&'a [Element], crate::code::Failure> {
+) -> Result<&'a [Element], Failure> {
     // SAFETY: promised by the caller.
-    unsafe { array(elements.cast::<Element>(), count) }
+    unsafe { array(elements.cast::<Element>(), count, "elements") }
 }
 
-/// Measures a chain of `count` elements.
+/// Measures a chain of `count` elements. Length, V and E are sums over the elements by a 32-point rule: what happens
+/// between two of them (a jump of curvature at a G1 joint) does not count.
 ///
 /// Errors: MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_IRREGULAR.
 #[unsafe(no_mangle)]
@@ -93,32 +94,30 @@ pub unsafe extern "C" fn minvar_measure(
     error: *mut minvar_error,
 ) -> minvar_code {
     // SAFETY: promised by the caller.
-    let result = unsafe {
-        (|| {
+    unsafe {
+        answer::<MeasureError>(error, || {
             let elements = elements_of(elements, count)?;
+            let figures = Output::new(figures, "figures")?;
             let [least, largest] = measure::curvature_range(elements)?;
             let [box_low, box_high] = measure::bounding_box(elements)?;
-            put(
-                figures,
-                minvar_figures {
-                    length: measure::length(elements),
-                    variation: measure::variation(elements),
-                    bending: measure::bending(elements),
-                    least_curvature: least.into(),
-                    largest_curvature: largest.into(),
-                    box_low,
-                    box_high,
-                },
-            )
-        })()
-    };
-    // SAFETY: promised by the caller.
-    unsafe { finish(result, error) }
+            figures.put(minvar_figures {
+                length: measure::length(elements),
+                variation: measure::variation(elements),
+                bending: measure::bending(elements),
+                least_curvature: least.into(),
+                largest_curvature: largest.into(),
+                box_low,
+                box_high,
+            });
+            Ok(())
+        })
+    }
 }
 
 /// What holds at parameter `t`, 0 to 1, of element `element`, from 0.
 ///
-/// Errors: MINVAR_OUT_OF_RANGE, MINVAR_IRREGULAR, MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE.
+/// Errors: MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_OUT_OF_RANGE for `element` or `t` (NaN too),
+/// MINVAR_IRREGULAR where the curve has no tangent there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn minvar_point_at(
     elements: *const minvar_element,
@@ -129,15 +128,25 @@ pub unsafe extern "C" fn minvar_point_at(
     error: *mut minvar_error,
 ) -> minvar_code {
     // SAFETY: promised by the caller.
-    let result =
-        unsafe { (|| put(point, measure::at(elements_of(elements, count)?, element, t)?.into()))() };
-    // SAFETY: promised by the caller.
-    unsafe { finish(result, error) }
+    unsafe {
+        answer::<MeasureError>(error, || {
+            let elements = elements_of(elements, count)?;
+            let point = Output::new(point, "point")?;
+            let found = measure::at(elements, element, t);
+            point.put(placed(
+                found,
+                if element < count { "t must be from 0 to 1" } else { "there is no such element" },
+            )?);
+            Ok(())
+        })
+    }
 }
 
-/// What holds at arc length `s` from the start, 0 to the length of the chain.
+/// What holds at arc length `s` from the start, 0 to the length of the chain; beyond either end by rounding (1e-9 of
+/// the length) is taken as that end. The start of an element rather than the end of the one before.
 ///
-/// Errors: as minvar_point_at().
+/// Errors: MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_OUT_OF_RANGE for `s` (NaN too), MINVAR_IRREGULAR where
+/// the curve has no tangent there.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn minvar_point_at_length(
     elements: *const minvar_element,
@@ -147,15 +156,22 @@ pub unsafe extern "C" fn minvar_point_at_length(
     error: *mut minvar_error,
 ) -> minvar_code {
     // SAFETY: promised by the caller.
-    let result = unsafe { (|| put(point, measure::at_length(elements_of(elements, count)?, s)?.into()))() };
-    // SAFETY: promised by the caller.
-    unsafe { finish(result, error) }
+    unsafe {
+        answer::<MeasureError>(error, || {
+            let elements = elements_of(elements, count)?;
+            let point = Output::new(point, "point")?;
+            point
+                .put(placed(measure::at_length(elements, s), "s must be from 0 to the length of the chain")?);
+            Ok(())
+        })
+    }
 }
 
 /// The place of a chain that is nearest to the point x, y, z; of several equally near ones the first. No place is
 /// missed: it is found from the roots of a polynomial.
 ///
-/// Errors: as minvar_point_at().
+/// Errors: MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_OUT_OF_RANGE if x, y or z is NaN or infinite,
+/// MINVAR_IRREGULAR where the curve has no tangent at the nearest place.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn minvar_closest_point(
     elements: *const minvar_element,
@@ -167,7 +183,24 @@ pub unsafe extern "C" fn minvar_closest_point(
     error: *mut minvar_error,
 ) -> minvar_code {
     // SAFETY: promised by the caller.
-    let result = unsafe { (|| put(point, measure::closest(elements_of(elements, count)?, [x, y, z])?.into()))() };
-    // SAFETY: promised by the caller.
-    unsafe { finish(result, error) }
+    unsafe {
+        answer::<MeasureError>(error, || {
+            let elements = elements_of(elements, count)?;
+            let point = Output::new(point, "point")?;
+            point.put(placed(measure::closest(elements, [x, y, z]), "x, y and z must be finite")?);
+            Ok(())
+        })
+    }
+}
+
+/// A found place, or what was wrong; `rule` says what the arguments of a place must be.
+fn placed(
+    found: Result<CurvePoint, MeasureError>,
+    rule: &'static str,
+) -> Result<minvar_point, Refusal<MeasureError>> {
+    match found {
+        Ok(point) => Ok(point.into()),
+        Err(MeasureError::OutOfRange) => Err(Failure::Place { rule }.into()),
+        Err(error) => Err(error.into()),
+    }
 }

@@ -1,12 +1,12 @@
 //! Paths for machines.
 
-use crate::code::{Failure, finish, minvar_code, minvar_error};
+use crate::code::{Failure, answer, minvar_code, minvar_error};
 use crate::curve::minvar_element;
 use crate::measure::elements_of;
-use crate::raw::{put, reference, writable};
+use crate::raw::{Output, null, reference};
 use core::ffi::{c_char, c_void};
 use core::fmt;
-use kernel::toolpath::{self, GcodeOptions, Motion, Move, Plane, Units};
+use kernel::toolpath::{self, GcodeError, GcodeOptions, Motion, Move, PathError, Plane, Units};
 
 /// The unit of all lengths of a program: the curve's, the tolerance's and the feed's.
 #[repr(C)]
@@ -54,12 +54,13 @@ pub struct minvar_move {
     pub deviation: f64,
 }
 
-/// Receives the moves of a path in order; `move` lives until the function returns. Return 0 to go on, anything else to
-/// stop.
-pub type minvar_visitor = Option<unsafe extern "C" fn(context: *mut c_void, move_: *const minvar_move) -> i32>;
+/// Receives the moves of a path in order, with the caller's context; `step` lives until the function returns. Return 0
+/// to go on, anything else to stop with MINVAR_STOPPED. It must return, not leave by longjmp() or an exception.
+pub type minvar_visitor = Option<unsafe extern "C" fn(context: *mut c_void, step: *const minvar_move) -> i32>;
 
-/// Receives text, `length` bytes that are not NUL-terminated and live until the function returns. Return 0 if all was
-/// written, anything else to stop.
+/// Receives text, with the caller's context: `length` bytes of ASCII that are not NUL-terminated and live until the
+/// function returns. They come in pieces of any size, often of a few bytes: gather them in a buffer. Return 0 if all
+/// was taken, anything else to stop with MINVAR_STOPPED. It must return, not leave by longjmp() or an exception.
 pub type minvar_writer =
     Option<unsafe extern "C" fn(context: *mut c_void, text: *const c_char, length: usize) -> i32>;
 
@@ -93,22 +94,23 @@ pub struct minvar_gcode_options {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct minvar_gcode_summary {
-    /// Lines of text.
+    /// The number of lines of text.
     pub lines: usize,
-    /// G2 and G3 moves.
+    /// The number of G2 and G3 moves.
     pub arcs: usize,
-    /// G1 moves that cut.
+    /// The number of G1 moves that cut; the plunge is not counted.
     pub chords: usize,
-    /// The length of the cut.
+    /// The length of the cut, in the program's unit.
     pub length: f64,
-    /// The time of the cut at the programmed feed, minutes, without acceleration, plunge and rapids.
+    /// The time of the cut at the programmed feed in minutes, without acceleration, plunge and rapids.
     pub minutes: f64,
-    /// Proven: no point of the printed cut is farther than this from the curve, nor the curve from the cut.
+    /// Proven: no point of the printed cut is farther than this length from the curve (raised by `depth`), nor the
+    /// curve from the cut.
     pub deviation: f64,
 }
 
 /// Calls `visit` with the chords of a chain, each within `tolerance` (a length) of its part: as few as a greedy choice
-/// makes.
+/// makes. The first one begins where the chain does, at C(0) of element 0; every corner of the chain is the end of one.
 ///
 /// Errors: MINVAR_BAD_TOLERANCE, MINVAR_TOLERANCE_TOO_FINE, MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_GAP,
 /// all before the first move; MINVAR_STOPPED if the visitor stopped.
@@ -122,25 +124,24 @@ pub unsafe extern "C" fn minvar_chords(
     error: *mut minvar_error,
 ) -> minvar_code {
     // SAFETY: promised by the caller.
-    let result = unsafe {
-        (|| {
-            let visit = visit.ok_or(Failure::new(minvar_code::MINVAR_NULL_POINTER))?;
+    unsafe {
+        answer::<PathError>(error, || {
+            let visit = visit.ok_or(null("visit"))?;
             for chord in toolpath::chords(elements_of(elements, count)?, tolerance)? {
                 let found =
                     minvar_move { turn: 0, end: chord.end, centre: [0.0; 3], deviation: chord.deviation };
                 if visit(context, &found) != 0 {
-                    return Err(Failure::new(minvar_code::MINVAR_STOPPED));
+                    return Err(Failure::Stopped.into());
                 }
             }
             Ok(())
-        })()
-    };
-    // SAFETY: promised by the caller.
-    unsafe { finish(result, error) }
+        })
+    }
 }
 
-/// Calls `visit` with tangent-continuous arcs and lines within `tolerance` (a length) of a chain in a plane z =
-/// constant: each biarc the longest that can be proven.
+/// Calls `visit` with arcs and lines within `tolerance` (a length) of a chain in a plane z = constant: each biarc the
+/// longest that can be proven. They continue each other's tangent but for the corners of the chain. The first one begins
+/// where the chain does, at C(0) of element 0.
 ///
 /// Errors: as minvar_chords(), and MINVAR_PATH_NOT_PLANAR, MINVAR_IRREGULAR.
 #[unsafe(no_mangle)]
@@ -153,15 +154,17 @@ pub unsafe extern "C" fn minvar_arcs(
     error: *mut minvar_error,
 ) -> minvar_code {
     // SAFETY: promised by the caller.
-    let result = unsafe {
-        (|| {
-            let visit = visit.ok_or(Failure::new(minvar_code::MINVAR_NULL_POINTER))?;
+    unsafe {
+        answer::<PathError>(error, || {
+            let visit = visit.ok_or(null("visit"))?;
             let arcs = toolpath::arcs(elements_of(elements, count)?, tolerance)?;
             let z = arcs.height();
             for segment in arcs {
                 let (turn, end, centre) = match segment.motion {
                     Move::Line { end } => (0, end, None),
-                    Move::Arc { end, centre, clockwise } => (if clockwise { -1 } else { 1 }, end, Some(centre)),
+                    Move::Arc { end, centre, clockwise } => {
+                        (if clockwise { -1 } else { 1 }, end, Some(centre))
+                    }
                 };
                 let found = minvar_move {
                     turn,
@@ -170,17 +173,16 @@ pub unsafe extern "C" fn minvar_arcs(
                     deviation: segment.deviation,
                 };
                 if visit(context, &found) != 0 {
-                    return Err(Failure::new(minvar_code::MINVAR_STOPPED));
+                    return Err(Failure::Stopped.into());
                 }
             }
             Ok(())
-        })()
-    };
-    // SAFETY: promised by the caller.
-    unsafe { finish(result, error) }
+        })
+    }
 }
 
-/// The defaults named at each field, with the three that have none.
+/// The defaults named at each field, with the three that have none: tolerance and safe height are lengths, the feed is
+/// length/minute. Only fills in a struct: minvar_write_gcode() checks it.
 #[unsafe(no_mangle)]
 pub extern "C" fn minvar_gcode_defaults(tolerance: f64, feed: f64, safe_height: f64) -> minvar_gcode_options {
     let defaults = GcodeOptions::new(tolerance, feed, safe_height);
@@ -215,10 +217,11 @@ impl fmt::Write for Text {
 /// Writes a chain as one complete G-code program through `write`. The same input gives the same bytes on every machine.
 ///
 /// The lines: unit, plane, G90, G91.1, G94, G40, G80; rapid to the safe height and to the start; plunge; the cut at the
-/// feed; rapid to the safe height; M2. `summary` may be NULL.
+/// feed; rapid to the safe height; M2. Each ends with `\n`. `summary` may be NULL.
 ///
-/// Errors: all but MINVAR_STOPPED are found before the first character: the codes from 40 on, and MINVAR_BAD_OPTION for
-/// an unknown unit, plane or motion (`index`: 0, 1, 2).
+/// Errors: those of minvar_arcs() or, with MINVAR_CHORDS, of minvar_chords(); MINVAR_BAD_OPTION for an unknown unit,
+/// plane or motion; MINVAR_BAD_DECIMALS to MINVAR_COORDINATE_TOO_LARGE. All are found before the first character;
+/// only MINVAR_STOPPED, where `write` stopped, leaves part of a program behind.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn minvar_write_gcode(
     elements: *const minvar_element,
@@ -230,30 +233,46 @@ pub unsafe extern "C" fn minvar_write_gcode(
     error: *mut minvar_error,
 ) -> minvar_code {
     // SAFETY: promised by the caller.
-    let result = unsafe {
-        (|| {
-            let given = reference(options)?;
-            let write = write.ok_or(Failure::new(minvar_code::MINVAR_NULL_POINTER))?;
-            if !summary.is_null() {
-                writable(summary)?;
-            }
+    unsafe {
+        answer::<GcodeError>(error, || {
+            let given = reference(options, "options")?;
+            let write = write.ok_or(null("write"))?;
+            let summary = Output::optional(summary, "summary")?;
             let options = GcodeOptions {
                 tolerance: given.tolerance,
                 units: match given.units {
                     0 => Units::Millimetres,
                     1 => Units::Inches,
-                    _ => return Err(Failure::option(0, "units: must be millimetres (0) or inches (1)")),
+                    _ => {
+                        return Err(Failure::Option {
+                            field: 5,
+                            rule: "units: must be millimetres (0) or inches (1)",
+                        }
+                        .into());
+                    }
                 },
                 plane: match given.plane {
                     0 => Plane::Xy,
                     1 => Plane::Zx,
                     2 => Plane::Yz,
-                    _ => return Err(Failure::option(1, "plane: must be XY (0), ZX (1) or YZ (2)")),
+                    _ => {
+                        return Err(Failure::Option {
+                            field: 6,
+                            rule: "plane: must be XY (0), ZX (1) or YZ (2)",
+                        }
+                        .into());
+                    }
                 },
                 motion: match given.motion {
                     0 => Motion::Arcs,
                     1 => Motion::Chords,
-                    _ => return Err(Failure::option(2, "motion: must be arcs (0) or chords (1)")),
+                    _ => {
+                        return Err(Failure::Option {
+                            field: 7,
+                            rule: "motion: must be arcs (0) or chords (1)",
+                        }
+                        .into());
+                    }
                 },
                 feed: given.feed,
                 plunge_feed: (given.plunge_feed != 0.0).then_some(given.plunge_feed),
@@ -264,22 +283,17 @@ pub unsafe extern "C" fn minvar_write_gcode(
             };
             let mut text = Text { write, context };
             let found = toolpath::write_gcode(elements_of(elements, count)?, &options, &mut text)?;
-            if summary.is_null() {
-                return Ok(());
-            }
-            put(
-                summary,
-                minvar_gcode_summary {
+            if let Some(summary) = summary {
+                summary.put(minvar_gcode_summary {
                     lines: found.lines,
                     arcs: found.arcs,
                     chords: found.chords,
                     length: found.length,
                     minutes: found.minutes,
                     deviation: found.deviation,
-                },
-            )
-        })()
-    };
-    // SAFETY: promised by the caller.
-    unsafe { finish(result, error) }
+                });
+            }
+            Ok(())
+        })
+    }
 }

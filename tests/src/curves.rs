@@ -1,6 +1,8 @@
 //! Curves for the tests: solving them in memory that is neither longer nor cleaner than promised, and an evaluation of
 //! elements that shares nothing with the kernel.
 
+#![allow(clippy::disallowed_methods, reason = "the tests may use the platform's cosine and powers")]
+
 use minvar::curve::{
     Curve, CurveError, Element, Functional, Joint, Options, Report, elements_len, solve, workspace_len,
 };

@@ -112,7 +112,7 @@ pub enum CurveError {
         /// Which quantity.
         part: Part,
     },
-    /// No joint has a position.
+    /// Fewer than two joints have a position.
     NoPosition,
     /// The data are too large or too small for the arithmetic: lengths from 1e-90 to 1e90 are allowed.
     SizeOutOfRange,
@@ -174,7 +174,7 @@ impl fmt::Display for CurveError {
                     part.name()
                 )
             }
-            Self::NoPosition => f.write_str("no joint has a position; give at least two"),
+            Self::NoPosition => f.write_str("fewer than two joints have a position"),
             Self::SizeOutOfRange => {
                 f.write_str("the data are too large or too small: lengths must be from 1e-90 to 1e90")
             }

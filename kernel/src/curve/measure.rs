@@ -22,7 +22,7 @@ use nalgebra::Vector3;
 pub enum MeasureError {
     /// There are no elements.
     NoElements,
-    /// A row of an element is NaN or infinite.
+    /// A row of an element is NaN, infinite or beyond 1e100.
     NotFinite {
         /// The element.
         element: usize,
@@ -48,7 +48,7 @@ impl fmt::Display for MeasureError {
         match *self {
             Self::NoElements => f.write_str("there are no elements to measure"),
             Self::NotFinite { element } => {
-                write!(f, "element {element} has a number that is NaN or infinite")
+                write!(f, "element {element} has a number that is NaN, infinite or beyond 1e100")
             }
             Self::Irregular { element } => {
                 write!(f, "element {element} has no tangent there: its first derivative vanishes")
@@ -129,7 +129,10 @@ fn derivatives(rows: &[Vector3<f64>; 6], t: f64) -> [Vector3<f64>; 3] {
     })
 }
 
-/// Checks that there are elements and that they are finite.
+/// Numbers beyond this overflow when they are multiplied.
+const LARGEST: f64 = 1e100;
+
+/// Checks that there are elements and that their numbers are finite, and not beyond 1e100.
 ///
 /// # Errors
 /// [`MeasureError::NoElements`], [`MeasureError::NotFinite`].
@@ -138,7 +141,7 @@ pub fn check(elements: &[Element]) -> Result<(), MeasureError> {
         return Err(MeasureError::NoElements);
     }
     for (element, data) in elements.iter().enumerate() {
-        if data.rows.iter().flatten().any(|x| !x.is_finite()) {
+        if data.rows.iter().flatten().any(|x| !(x.abs() <= LARGEST)) {
             return Err(MeasureError::NotFinite { element });
         }
     }

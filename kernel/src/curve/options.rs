@@ -18,8 +18,9 @@ pub struct Options {
     pub max_iterations: u32,
     /// 2 for a planar curve, 3 for a space curve, 0 to find out: planar where all data lie in a plane. Default 0.
     pub dimension: u32,
-    /// The curve has converged when another step promises to lower the functional by less than this fraction; two
-    /// more steps polish it then. 0 asks for as much as the arithmetic gives. Default 1e-12.
+    /// The curve has converged when a Newton step promises to lower the functional by less than this fraction, or when
+    /// 20 iterations together lowered it by less than a thousand times that; up to two more steps polish it. 0 asks for
+    /// as much as the arithmetic gives. Default 1e-12.
     pub relative_decrease: f64,
 }
 

@@ -1,0 +1,301 @@
+//! The C and C++ interface, used as C and C++ programs use it: compiled with the system's compilers against the headers
+//! of this repository, linked with the static and with the shared library, and run.
+//!
+//! The programs are in `tests/c/`; each prints what it found wrong and exits with 1. `CC` and `CXX` choose other
+//! compilers than `cc` and `c++`.
+
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+use std::{env, fs};
+
+const WARNINGS: [&str; 6] = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package is in the workspace")
+}
+
+/// Where this file builds, apart from what else cargo does.
+fn scratch() -> PathBuf {
+    let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c_api");
+    fs::create_dir_all(&place).expect("the target directory can be written");
+    place
+}
+
+/// Runs a command that must be there; how it ends is the caller's to judge.
+fn run(command: &mut Command, what: &str) -> Output {
+    command.output().unwrap_or_else(|error| {
+        panic!("{what} is needed for this test but cannot be run ({error}): {command:?}")
+    })
+}
+
+/// Runs a command that must succeed and returns what it printed.
+fn must(command: &mut Command, what: &str) -> String {
+    let output = run(command, what);
+    let text =
+        format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{what} failed, {}: {command:?}\n{text}", output.status);
+    text
+}
+
+/// The directory with `libminvar.a` and `libminvar.so`, built once, under the name by which it is loaded too.
+fn library() -> &'static Path {
+    static LIBRARY: OnceLock<PathBuf> = OnceLock::new();
+    LIBRARY.get_or_init(|| {
+        let target =
+            Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("cargo's tmp is in the target directory");
+        let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        cargo.args(["build", "--package", "minvar-ffi", "--release", "--target-dir"]).arg(target);
+        // A test writes no source: a header that has drifted fails here.
+        cargo.env("MINVAR_HEADER", "check").current_dir(root());
+        must(&mut cargo, "building libminvar");
+        let library = target.join("release");
+        for name in ["libminvar.a", "libminvar.so"] {
+            assert!(library.join(name).is_file(), "cargo built no {name} in {}", library.display());
+        }
+        let loaded = scratch().join("libminvar.so.0");
+        let _ = fs::remove_file(&loaded);
+        fs::copy(library.join("libminvar.so"), loaded).expect("the target directory can be written");
+        library
+    })
+}
+
+/// A compiler by its variable or its usual name.
+fn compiler(variable: &str, usual: &str) -> String {
+    let name = env::var(variable).unwrap_or_else(|_| usual.into());
+    let there = Command::new(&name).arg("--version").output().is_ok_and(|output| output.status.success());
+    assert!(there, "no compiler `{name}`: install one (Debian: gcc and g++), or name yours by {variable}");
+    name
+}
+
+/// A compiler's command with the flags of every test: warnings are errors, the headers are this repository's.
+fn compile(source: &str) -> Command {
+    let (name, standard) = if source.ends_with(".cpp") {
+        (compiler("CXX", "c++"), "-std=c++17")
+    } else {
+        (compiler("CC", "cc"), "-std=c11")
+    };
+    let mut command = Command::new(name);
+    command.arg(standard).args(WARNINGS).args(["-O1", "-g"]);
+    command.arg("-I").arg(root().join("include"));
+    command.arg("-D_POSIX_C_SOURCE=200809L");
+    command.arg(concat!("-DMINVAR_VERSION_EXPECTED=\"", env!("CARGO_PKG_VERSION"), "\""));
+    command
+}
+
+fn source(name: &str) -> PathBuf {
+    root().join("tests/c").join(name)
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Link {
+    Static,
+    Shared,
+}
+
+/// Builds a program from sources of `tests/c/`.
+fn build(sources: &[&str], link: Link, flags: &[&str]) -> PathBuf {
+    let name = sources[0].replace('.', "_");
+    let flavour: String = flags.concat().chars().filter(char::is_ascii_alphanumeric).collect();
+    let program = scratch().join(format!("{name}_{link:?}{flavour}"));
+    let mut command = compile(sources[0]);
+    command.args(flags).args(sources.iter().map(|name| source(name))).arg("-o").arg(&program);
+    match link {
+        // Nothing else is needed, no -lm -lpthread -ldl: those are the test programs' own.
+        Link::Static => command.arg(library().join("libminvar.a")),
+        Link::Shared => command
+            .arg("-L")
+            .arg(library())
+            .arg("-lminvar")
+            .arg(format!("-Wl,-rpath,{}", scratch().display())),
+    };
+    if sources[0] != "coving.c" {
+        command.args(["-lm", "-pthread"]);
+    }
+    must(&mut command, "compiling a test program");
+    program
+}
+
+/// Runs a test program; what it prints is shown where it fails.
+fn passes(program: &Path) -> String {
+    must(&mut Command::new(program), "a test program")
+}
+
+/// Builds and runs with either library.
+fn passes_with_both(sources: &[&str], flags: &[&str]) {
+    for link in [Link::Static, Link::Shared] {
+        passes(&build(sources, link, flags));
+    }
+}
+
+/// The compilers whose opinion counts: the system's, and clang where it is installed.
+fn compilers(usual: &str, clang: &str) -> Vec<String> {
+    let mut all = vec![usual.to_owned()];
+    if Command::new(clang).arg("--version").output().is_ok_and(|output| output.status.success()) {
+        all.push(clang.into());
+    }
+    all
+}
+
+#[test]
+fn the_c_header_compiles_alone_in_every_language() {
+    let c = compilers(&compiler("CC", "cc"), "clang");
+    let cpp = compilers(&compiler("CXX", "c++"), "clang++");
+    let languages = [(&c, "c", "c11"), (&c, "c", "c17"), (&cpp, "c++", "c++17"), (&cpp, "c++", "c++20")];
+    for (compilers, language, standard) in languages {
+        for compiler in compilers {
+            let mut command = Command::new(compiler);
+            command.args(["-x", language, &format!("-std={standard}"), "-fsyntax-only"]).args(WARNINGS);
+            command.arg("-I").arg(root().join("include")).arg(source("header.c"));
+            must(&mut command, "compiling minvar.h");
+        }
+    }
+    passes_with_both(&["header.c"], &[]);
+}
+
+#[test]
+fn the_cpp_header_compiles_without_a_warning() {
+    for compiler in compilers(&compiler("CXX", "c++"), "clang++") {
+        for standard in ["c++17", "c++20"] {
+            // Optimised too: only then does a compiler see what may be uninitialised.
+            for level in ["-O0", "-O2"] {
+                let mut command = Command::new(&compiler);
+                command
+                    .arg(format!("-std={standard}"))
+                    .arg(level)
+                    .args(WARNINGS)
+                    .args(["-Wsign-conversion", "-c"]);
+                command.arg("-I").arg(root().join("include")).arg(source("wrapper_twice.cpp"));
+                command.args(["-o", "/dev/null"]);
+                must(&mut command, "compiling minvar.hpp");
+            }
+        }
+    }
+}
+
+#[test]
+fn structs_are_laid_out_in_c_as_in_rust() {
+    let printed = passes(&build(&["layout.c"], Link::Static, &[]));
+    let rust = fs::read_to_string(root().join("ffi/src/layout.rs")).expect("ffi/src/layout.rs");
+    let figures: Vec<&str> = rust.lines().map(str::trim).filter(|line| line.starts_with("minvar_")).collect();
+    assert!(figures.len() > 10, "no figures in ffi/src/layout.rs");
+    assert_eq!(printed.lines().collect::<Vec<_>>(), figures);
+    let declared = |line: &str| line.strip_prefix("typedef struct ")?.strip_suffix(" {").map(str::to_owned);
+    let in_header: BTreeSet<String> = header().lines().filter_map(declared).collect();
+    let checked: BTreeSet<String> =
+        figures.iter().filter_map(|line| line.split(' ').next().map(str::to_owned)).collect();
+    assert_eq!(checked, in_header, "the structs of minvar.h and those of ffi/src/layout.rs");
+}
+
+#[test]
+fn a_c_program_computes_the_coving() {
+    passes_with_both(&["coving.c"], &[]);
+}
+
+#[test]
+fn every_wrong_argument_is_refused_and_changes_nothing() {
+    passes_with_both(&["bad_input.c"], &[]);
+}
+
+#[test]
+fn callbacks_stop_the_work_and_dirty_memory_changes_nothing() {
+    passes_with_both(&["callbacks.c"], &[]);
+}
+
+#[test]
+fn threads_that_solve_at_once_get_the_same_bits() {
+    passes_with_both(&["threads.c"], &[]);
+}
+
+#[test]
+fn the_cpp_wrapper_does_what_the_c_interface_does() {
+    let sources = ["wrapper.cpp", "wrapper_twice.cpp"];
+    passes_with_both(&sources, &[]);
+    passes(&build(&sources, Link::Static, &["-std=c++20"]));
+}
+
+#[test]
+fn the_cpp_wrapper_refuses_a_library_of_another_interface() {
+    passes_with_both(&["wrapper_stranger.cpp"], &[]);
+}
+
+#[test]
+fn valgrind_finds_nothing_where_it_is_installed() {
+    if !Command::new("valgrind").arg("--version").output().is_ok_and(|output| output.status.success()) {
+        eprintln!("valgrind is not installed: not checked");
+        return;
+    }
+    for name in ["coving.c", "bad_input.c"] {
+        let mut command = Command::new("valgrind");
+        command.args(["--quiet", "--error-exitcode=9", "--leak-check=full"]).arg(build(
+            &[name],
+            Link::Static,
+            &["-g3"],
+        ));
+        must(&mut command, "valgrind");
+    }
+}
+
+fn header() -> String {
+    fs::read_to_string(root().join("include/minvar.h")).expect("include/minvar.h")
+}
+
+/// The functions that the header declares.
+fn declared() -> BTreeSet<String> {
+    let name = |line: &str| {
+        let (before, _) = line.split_once('(')?;
+        let name = before.rsplit([' ', '*']).next()?;
+        (!line.starts_with([' ', '/', '#']) && !line.starts_with("typedef") && name.starts_with("minvar_"))
+            .then(|| name.to_owned())
+    };
+    header().lines().filter_map(name).collect()
+}
+
+/// The symbols that `nm` lists, by name, versions cut off.
+fn symbols(file: impl AsRef<OsStr>, flags: &[&str]) -> BTreeSet<String> {
+    let printed =
+        run(Command::new("nm").args(flags).arg("--format=posix").arg(file), "nm (Debian: binutils)");
+    assert!(printed.status.success(), "nm failed: {}", String::from_utf8_lossy(&printed.stderr));
+    let name = |line: &str| Some(line.split_once(' ')?.0.split('@').next()?.to_owned());
+    // Weak ones (the C library's start-up hooks) bind to nothing if nobody has them.
+    let strong = |line: &&str| line.split(' ').nth(1) != Some("w");
+    String::from_utf8_lossy(&printed.stdout).lines().filter(strong).filter_map(name).collect()
+}
+
+/// What the library takes from outside: memory blocks copied, and `abort`, which nothing calls.
+const FROM_OUTSIDE: [&str; 6] = ["abort", "bcmp", "memcmp", "memcpy", "memmove", "memset"];
+
+fn foreign(needed: &BTreeSet<String>) -> Vec<String> {
+    needed.iter().filter(|name| !FROM_OUTSIDE.contains(&name.as_str())).cloned().collect()
+}
+
+#[test]
+fn the_shared_library_exports_the_header_and_nothing_else() {
+    let shared = library().join("libminvar.so");
+    assert!(declared().len() > 20, "no functions found in minvar.h: {:?}", declared());
+    assert_eq!(symbols(&shared, &["--dynamic", "--defined-only"]), declared());
+    let needed = symbols(&shared, &["--dynamic", "--undefined-only"]);
+    assert_eq!(foreign(&needed), [""; 0], "libminvar.so needs more than memory blocks");
+    let dynamic = must(Command::new("readelf").arg("--dynamic").arg(&shared), "readelf (Debian: binutils)");
+    assert!(dynamic.contains("Library soname: [libminvar.so.0]"), "{dynamic}");
+}
+
+#[test]
+fn the_static_library_needs_no_heap_and_no_printing() {
+    let archive = library().join("libminvar.a");
+    let own = symbols(&archive, &["--defined-only", "--extern-only"]);
+    let missing: Vec<_> = declared().difference(&own).cloned().collect();
+    assert_eq!(missing, [""; 0], "declared in minvar.h, not in libminvar.a");
+
+    // What a program that calls every function takes from the archive, without the C library's part.
+    let taken = scratch().join("everything.o");
+    let mut command = Command::new(compiler("CC", "cc"));
+    command.args(["-r", "-nostdlib", "-o"]).arg(&taken);
+    command.args(declared().iter().map(|name| format!("-Wl,--undefined={name}"))).arg(&archive);
+    must(&mut command, "linking the whole interface");
+    assert!(declared().is_subset(&symbols(&taken, &["--defined-only"])), "not everything was linked");
+    let needed = symbols(&taken, &["--undefined-only"]);
+    assert_eq!(foreign(&needed), [""; 0], "libminvar.a needs more than memory blocks");
+}
