@@ -532,9 +532,15 @@ impl Executor for Threads {
 fn the_executor_does_not_change_a_bit() {
     let bits = |executor: &dyn Executor, relaxation: usize| {
         let mut state = scattered(23);
+        let problem = Sphere { count: 23, closed: true };
         let settings = Settings { relaxation, ..Settings::DEFAULT };
-        let outcome = run(&Sphere { count: 23, closed: true }, &settings, executor, &mut state);
-        (state.iter().map(|x| x.to_bits()).collect::<Vec<_>>(), format!("{outcome:?}"))
+        let mut workspace = vec![f64::NAN; workspace_len(&problem, executor.width())];
+        let mut watch = Watch { stop_at: 0, records: Vec::new() };
+        let outcome = minimise(&problem, &settings, executor, &mut state, &mut workspace, &mut [], &mut watch)
+            .expect("enough memory");
+        assert_eq!(outcome.status, Status::Converged);
+        // Debug output of a number is as long as it takes to tell it from its neighbours.
+        (state, format!("{outcome:?}"), format!("{:?}", watch.records))
     };
     for relaxation in [0, 3] {
         let want = bits(&InOrder, relaxation);
@@ -679,6 +685,118 @@ fn a_shuffled_ring_reaches_back_two_blocks() {
             assert_eq!(outcome.status, Status::Converged);
             // The steps of a ring cannot all be one: they are all none.
             assert!((outcome.value - count as f64).abs() < 1e-9, "{outcome:?}");
+        }
+    }
+}
+
+/// A strip of square patches, `width` by `length` corners, each corner one number: `Σ` over patches of the squares of the
+/// differences along its sides less one in each direction, one corner held. Corners and patches are shuffled.
+struct Strip {
+    width: usize,
+    place: Vec<usize>,
+    patches: Vec<usize>,
+    bound: usize,
+}
+
+impl Strip {
+    fn corners(&self, element: usize) -> [usize; 4] {
+        let patch = self.patches[element];
+        let (x, y) = (patch / (self.width - 1), patch % (self.width - 1));
+        let at = |x: usize, y: usize| self.place[x * self.width + y];
+        [at(x, y), at(x + 1, y), at(x, y + 1), at(x + 1, y + 1)]
+    }
+}
+
+/// The sides of a patch as pairs of its corners.
+const SIDES: [(usize, usize); 4] = [(0, 1), (2, 3), (0, 2), (1, 3)];
+
+impl Problem for Strip {
+    fn blocks(&self) -> usize {
+        self.place.len()
+    }
+    fn dofs(&self, _: usize) -> usize {
+        1
+    }
+    fn state_range(&self, block: usize) -> Range<usize> {
+        block..block + 1
+    }
+    fn state_len(&self) -> usize {
+        self.place.len()
+    }
+    fn elements(&self) -> usize {
+        self.patches.len()
+    }
+    fn element_blocks(&self, element: usize, blocks: &mut BlockList) {
+        blocks.extend(self.corners(element));
+    }
+    fn max_element_dofs(&self) -> usize {
+        4
+    }
+    fn envelope_bound(&self) -> usize {
+        self.bound
+    }
+    fn cost(&self, element: usize, state: &[f64]) -> f64 {
+        let x = self.corners(element).map(|block| state[block]);
+        let sides: f64 = SIDES.iter().map(|&(a, b)| (x[b] - x[a] - 1.0) * (x[b] - x[a] - 1.0)).sum();
+        if self.patches[element] == 0 { sides + x[0] * x[0] } else { sides }
+    }
+    fn linearise(&self, element: usize, state: &[f64], gradient: &mut [f64], matrix: &mut [f64]) -> f64 {
+        let x = self.corners(element).map(|block| state[block]);
+        for (a, b) in SIDES {
+            let step = x[b] - x[a] - 1.0;
+            gradient[a] -= 2.0 * step;
+            gradient[b] += 2.0 * step;
+            matrix[packed(a, a)] += 2.0;
+            matrix[packed(b, b)] += 2.0;
+            matrix[packed(b, a)] -= 2.0;
+        }
+        if self.patches[element] == 0 {
+            gradient[0] += 2.0 * x[0];
+            matrix[packed(0, 0)] += 2.0;
+        }
+        self.cost(element, state)
+    }
+    fn retract(&self, _: usize, from: &[f64], step: &[f64], to: &mut [f64]) {
+        to[0] = from[0] + step[0];
+    }
+    fn natural_sizes(&self, _: usize, _: &[f64], sizes: &mut [f64]) {
+        sizes.fill(1.0);
+    }
+    fn natural_cost(&self) -> f64 {
+        self.elements() as f64
+    }
+}
+
+#[test]
+fn a_shuffled_strip_of_patches_gets_a_narrow_envelope() {
+    for (width, length) in [(2, 60), (4, 50), (6, 30)] {
+        for seed in 0..20 {
+            let n = width * length;
+            // Numbered across the strip a row would reach back over width + 1 others.
+            let bound = n * (width + 2);
+            let shuffled = |count, seed| Shuffled::new(count, 1, false, 0, seed).place;
+            let problem = Strip {
+                width,
+                place: shuffled(n, seed),
+                patches: shuffled((width - 1) * (length - 1), seed + 100),
+                bound,
+            };
+            let mut state = vec![0.0; n];
+            let mut workspace = vec![f64::NAN; workspace_len(&problem, 1)];
+            let settings = Settings { first_radius: 1e6, ..Settings::DEFAULT };
+            let outcome = minimise(&problem, &settings, &InOrder, &mut state, &mut workspace, &mut [], &mut Silent);
+            if let Err(short) = outcome {
+                let entries = bound + (short.needed - short.given) / 2;
+                println!("{width} {length} {seed}: {} a row", entries as f64 / n as f64);
+                continue;
+            }
+            let outcome = outcome.expect("a narrow envelope");
+            assert_eq!(outcome.status, Status::Converged);
+            for x in 0..length {
+                for y in 0..width {
+                    assert!((state[problem.place[x * width + y]] - (x + y) as f64).abs() < 1e-8);
+                }
+            }
         }
     }
 }
