@@ -5,7 +5,7 @@ use minvar::curve::{
     Report, elements_len, solve, workspace_len,
 };
 use minvar::solve::{Control, Observer, Record, Silent, Status};
-use minvar_tests::curves::{MARKER, deviation, distance, solve_curve};
+use minvar_tests::curves::{MARKER, deviation, distance, end_shape, norm, solve_curve};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::time::Instant;
@@ -199,10 +199,29 @@ fn a_curvature_that_is_not_perpendicular_is_refused() {
 #[test]
 fn a_curvature_along_a_curve_of_unknown_direction_is_refused() {
     // The chord is all that tells the direction, and the curvature is along it.
-    // FAILS: solved as a straight line, the fixed curvature silently dropped; no code path gives this error.
     let bent = Joint::at([0.0; 3]).with_curvature(Quantity::fixed([0.5, 0.0, 0.0]));
     let error = CurveError::CurvatureNeedsTangent { joint: 0 };
     refuses(&[bent, Joint::at([2.0, 0.0, 0.0])], error, &["joint 0", "tangent"]);
+}
+
+#[test]
+fn a_fixed_curvature_is_kept_or_refused_where_the_start_tangent_runs_along_it() {
+    // A circle through the three points: its tangents at the first two are along y, and so are the given curvatures; the
+    // chords are not.
+    // FAILS: the start tangent keeps its direction, and the curvature becomes 0 as if it had not been given.
+    let points = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
+    for (which, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
+        let mut joints = points.map(Joint::at);
+        joints[which] = joints[which].with_curvature(Quantity::fixed([0.0, 0.5 * sign, 0.0]));
+        match attempt(&joints, false, &Options { max_iterations: 30, ..Options::DEFAULT }) {
+            (Err(error), _) => assert_eq!(error, CurveError::CurvatureNeedsTangent { joint: which }),
+            (Ok(_), elements) => {
+                let (_, curvature, rounding) = end_shape(&elements[which], 0);
+                let size = norm(curvature);
+                assert!((size - 0.5).abs() <= 1e-14 + 10.0 * rounding, "joint {which} has curvature {size}");
+            }
+        }
+    }
 }
 
 #[test]
@@ -258,7 +277,7 @@ fn sizes_that_the_arithmetic_cannot_hold_are_refused() {
 
 #[test]
 fn points_whose_distance_overflows_are_too_far_apart_and_not_coincident() {
-    // FAILS: the extent overflows to infinity, of which every step is a small fraction: coincident.
+    // FAILS: the extent overflows to infinity, of which every step is a small fraction: CoincidentJoints.
     let far = [Joint::at([-1e308, 0.0, 0.0]), Joint::at([1e308, 0.0, 0.0])];
     refuses(&far, CurveError::SizeOutOfRange, &[]);
 }

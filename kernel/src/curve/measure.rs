@@ -8,9 +8,13 @@
 //! Every element is brought to a size near one by a power of two before it is measured, so lengths from 1e-90 to
 //! 1e90 give the same digits.
 
+mod place;
+mod whole;
+
+pub use place::{at, at_length, closest};
+pub use whole::{bending, bounding_box, curvature_range, length, variation};
+
 use super::element::Element;
-use super::fairness::Functional;
-use super::model::row_cost;
 use crate::basis::bernstein::Bernstein;
 use crate::basis::hermite;
 use crate::basis::quadrature::FINEST;
@@ -217,60 +221,6 @@ fn part_length(rows: &[Vector3<f64>; 6], to: f64) -> f64 {
     sum
 }
 
-/// The length of a chain: 32-point Gauss–Lobatto an element, which is exact to rounding for elements without near
-/// cusps.
-pub fn length(elements: &[Element]) -> f64 {
-    let mut sum = 0.0;
-    for element in elements {
-        let (rows, unit) = normalised(element);
-        sum += unit * part_length(&rows, 1.0);
-    }
-    sum
-}
-
-/// The two halves of an element.
-fn halves(rows: &[Vector3<f64>; 6]) -> [[Vector3<f64>; 6]; 2] {
-    let basis = hermite::basis(0.5);
-    let middle: [Vector3<f64>; 3] = core::array::from_fn(|k| {
-        let mut sum = Vector3::zeros();
-        for a in 0..6 {
-            sum += rows[a] * basis[k][a];
-        }
-        sum
-    });
-    // A half's parameter runs half as fast: C' halves, C'' is quartered.
-    let half =
-        |p0, v0, a0, a1, v1, p1| -> [Vector3<f64>; 6] { [p0, v0 * 0.5, a0 * 0.25, a1 * 0.25, v1 * 0.5, p1] };
-    let [p, v, a] = middle;
-    [half(rows[0], rows[1], rows[2], a, v, p), half(p, v, a, rows[3], rows[4], rows[5])]
-}
-
-fn total(functional: Functional, elements: &[Element]) -> f64 {
-    let mut sum = 0.0;
-    for element in elements {
-        let (rows, unit) = normalised(element);
-        // Each half by itself: finer than any rule that a curve is minimised with.
-        let mut value = 0.0;
-        for half in halves(&rows) {
-            value += row_cost::<3>(functional, &FINEST, &half);
-        }
-        sum += if functional.scale_power() == 1 { value / unit } else { value / unit / unit / unit };
-    }
-    sum
-}
-
-/// The variation of curvature `V = ∫ |dκ/ds|² ds` of a chain, with `κ` the binormal curvature vector (thesis 4.2), by
-/// 32-point Gauss–Lobatto over each half of every element; 1/length³. What happens between elements (a jump of curvature at a G1 joint) does not count.
-pub fn variation(elements: &[Element]) -> f64 {
-    total(Functional::MVC, elements)
-}
-
-/// The bending energy `E = ∫ κ² ds` of a chain (thesis 4.1), by 32-point Gauss–Lobatto over each half of every
-/// element; 1/length.
-pub fn bending(elements: &[Element]) -> f64 {
-    total(Functional::MEC, elements)
-}
-
 /// What holds at parameter `t`, 0 to 1, of an element, its arc length apart. `normal` as [`plane_normal`] gives it.
 fn properties(
     elements: &[Element],
@@ -319,66 +269,6 @@ fn properties(
     })
 }
 
-/// What holds at parameter `t`, 0 to 1, of an element.
-///
-/// # Errors
-/// [`MeasureError::OutOfRange`], [`MeasureError::Irregular`], [`MeasureError::NotFinite`].
-pub fn at(elements: &[Element], element: usize, t: f64) -> Result<CurvePoint, MeasureError> {
-    check(elements)?;
-    let mut found = properties(elements, element, t, plane_normal(elements))?;
-    let (rows, unit) = normalised(&elements[element]);
-    found.arc_length = length(&elements[..element]) + unit * part_length(&rows, t);
-    Ok(found)
-}
-
-/// What holds at arc length `s` from the start, from 0 to [`length`]; beyond by rounding (1e-9 of the length) is taken
-/// as the end.
-///
-/// # Errors
-/// [`MeasureError::OutOfRange`], [`MeasureError::Irregular`], [`MeasureError::NotFinite`].
-pub fn at_length(elements: &[Element], s: f64) -> Result<CurvePoint, MeasureError> {
-    check(elements)?;
-    let total = length(elements);
-    if !(s >= -1e-9 * total && s <= total * (1.0 + 1e-9)) {
-        return Err(MeasureError::OutOfRange);
-    }
-    let mut before = 0.0;
-    let mut place = elements.len() - 1;
-    for (index, element) in elements.iter().enumerate() {
-        let (rows, unit) = normalised(element);
-        let own = unit * part_length(&rows, 1.0);
-        if s < before + own || index + 1 == elements.len() {
-            place = index;
-            break;
-        }
-        before += own;
-    }
-    let (rows, unit) = normalised(&elements[place]);
-    let wanted = ((s - before) / unit).max(0.0);
-    // Newton's method on the arc length, kept between bounds that close in.
-    let (mut low, mut high) = (0.0, 1.0);
-    let mut t = (wanted / part_length(&rows, 1.0)).clamp(0.0, 1.0);
-    for _ in 0..60 {
-        let off = part_length(&rows, t) - wanted;
-        if off > 0.0 {
-            high = t;
-        } else {
-            low = t;
-        }
-        let first = derivatives(&rows, t)[0];
-        let newton = t - off / libm::sqrt(first.dot(&first));
-        let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
-        if (next - t).abs() <= 4.0 * f64::EPSILON {
-            t = next;
-            break;
-        }
-        t = next;
-    }
-    let mut found = properties(elements, place, t, plane_normal(elements))?;
-    found.arc_length = before + unit * part_length(&rows, t);
-    Ok(found)
-}
-
 /// A coordinate of an element's derivative of an order from 1 to 3 as a polynomial.
 fn derivative_polynomial(bezier: &[Vector3<f64>; 6], order: usize, d: usize) -> Bernstein {
     let mut polynomial = Bernstein::new(bezier.map(|point| point[d]));
@@ -390,136 +280,4 @@ fn derivative_polynomial(bezier: &[Vector3<f64>; 6], order: usize, d: usize) -> 
 
 fn dot(a: &[Bernstein; 3], b: &[Bernstein; 3]) -> Bernstein {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: &[Bernstein; 3], b: &[Bernstein; 3]) -> [Bernstein; 3] {
-    core::array::from_fn(|d| a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3])
-}
-
-/// Calls `visit` with every parameter at which the curvature of an element may have an extreme: its ends, and the
-/// roots of the curvature's derivative, a polynomial of degree 14 (planar) or 21.
-fn curvature_extremes(element: &Element, normal: Option<[f64; 3]>, mut visit: impl FnMut(f64)) {
-    visit(0.0);
-    visit(1.0);
-    let bezier = hermite::to_bezier(&normalised(element).0.map(|row| row.into())).map(Vector3::from);
-    let [d1, d2, d3]: [[Bernstein; 3]; 3] =
-        core::array::from_fn(|k| core::array::from_fn(|d| derivative_polynomial(&bezier, k + 1, d)));
-    let (p, q) = (dot(&d1, &d1), dot(&d1, &d2));
-    let (u, v) = (cross(&d1, &d2), cross(&d1, &d3));
-    let numerator: [Bernstein; 3] = core::array::from_fn(|d| p * v[d] - q * u[d] * 3.0);
-    let derivative = match normal {
-        Some(n) => numerator[0] * n[0] + numerator[1] * n[1] + numerator[2] * n[2],
-        None => dot(&u, &numerator),
-    };
-    // A circle's derivative is zero or noise: then every place is as good.
-    if let Ok(roots) = derivative.roots() {
-        roots.iter().for_each(|&t| visit(t));
-    }
-}
-
-/// The places of least and of largest signed curvature (planar chains) or size of curvature (space curves).
-///
-/// # Errors
-/// [`MeasureError::NoElements`], [`MeasureError::NotFinite`], [`MeasureError::Irregular`].
-pub fn curvature_range(elements: &[Element]) -> Result<[CurvePoint; 2], MeasureError> {
-    check(elements)?;
-    let normal = plane_normal(elements);
-    let mut range: Option<[CurvePoint; 2]> = None;
-    let mut wrong = None;
-    let mut before = 0.0;
-    for (index, element) in elements.iter().enumerate() {
-        let (rows, unit) = normalised(element);
-        curvature_extremes(element, normal, |t| match properties(elements, index, t, normal) {
-            Ok(mut found) => {
-                found.arc_length = before + unit * part_length(&rows, t);
-                let range = range.get_or_insert([found; 2]);
-                if found.signed_curvature < range[0].signed_curvature {
-                    range[0] = found;
-                }
-                if found.signed_curvature > range[1].signed_curvature {
-                    range[1] = found;
-                }
-            }
-            Err(error) => wrong = Some(error),
-        });
-        before += unit * part_length(&rows, 1.0);
-    }
-    match (range, wrong) {
-        (Some(range), None) => Ok(range),
-        (_, Some(error)) => Err(error),
-        (None, None) => Err(MeasureError::NoElements),
-    }
-}
-
-/// The smallest box with sides parallel to the axes that holds a chain: its low and its high corner.
-///
-/// # Errors
-/// [`MeasureError::NoElements`], [`MeasureError::NotFinite`].
-pub fn bounding_box(elements: &[Element]) -> Result<[[f64; 3]; 2], MeasureError> {
-    check(elements)?;
-    let mut corners = [elements[0].rows[0]; 2];
-    let mut take = |d: usize, x: f64| {
-        corners[0][d] = corners[0][d].min(x);
-        corners[1][d] = corners[1][d].max(x);
-    };
-    for element in elements {
-        let (rows, _) = normalised(element);
-        let bezier = hermite::to_bezier(&rows.map(|row| row.into())).map(Vector3::from);
-        for d in 0..3 {
-            take(d, element.rows[0][d]);
-            take(d, element.rows[5][d]);
-            if let Ok(roots) = derivative_polynomial(&bezier, 1, d).roots() {
-                roots.iter().for_each(|&t| take(d, element.point(t)[d]));
-            }
-        }
-    }
-    Ok(corners)
-}
-
-/// The place of a chain that is nearest to a point; of several equally near ones the first. Found from the roots of
-/// `(C − point)·C'`, a polynomial of degree 9 an element (Fang 5.2), so no place is missed.
-///
-/// # Errors
-/// [`MeasureError::NoElements`], [`MeasureError::NotFinite`], [`MeasureError::OutOfRange`] for a point that is not
-/// finite, [`MeasureError::Irregular`] where the nearest place has no tangent.
-pub fn closest(elements: &[Element], point: [f64; 3]) -> Result<CurvePoint, MeasureError> {
-    check(elements)?;
-    if point.iter().any(|x| !x.is_finite()) {
-        return Err(MeasureError::OutOfRange);
-    }
-    let mut best = (f64::INFINITY, 0, 0.0);
-    for (index, element) in elements.iter().enumerate() {
-        let (rows, unit) = normalised(element);
-        let bezier = hermite::to_bezier(&rows.map(|row| row.into())).map(Vector3::from);
-        let target = Vector3::from_fn(|d, _| (point[d] - element.rows[0][d]) / unit);
-        // The element lies in the box of its control points: no nearer than that.
-        let mut outside = 0.0f64;
-        for d in 0..3 {
-            let (low, high) = Bernstein::new(bezier.map(|point| point[d])).range();
-            outside = outside.max(low - target[d]).max(target[d] - high);
-        }
-        if outside * unit > best.0 {
-            continue;
-        }
-        let mut consider = |t: f64| {
-            let basis = hermite::basis(t);
-            let mut offset = -target;
-            for a in 0..6 {
-                offset += rows[a] * basis[0][a];
-            }
-            let distance = unit * libm::sqrt(offset.dot(&offset));
-            if distance < best.0 {
-                best = (distance, index, t);
-            }
-        };
-        consider(0.0);
-        consider(1.0);
-        let offset: [Bernstein; 3] =
-            core::array::from_fn(|d| Bernstein::new(bezier.map(|point| point[d] - target[d])));
-        let first: [Bernstein; 3] = core::array::from_fn(|d| derivative_polynomial(&bezier, 1, d));
-        if let Ok(roots) = dot(&offset, &first).roots() {
-            roots.iter().for_each(|&t| consider(t));
-        }
-    }
-    at(elements, best.1, best.2)
 }

@@ -34,6 +34,7 @@
 mod check;
 pub mod convert;
 mod element;
+mod end;
 mod error;
 pub(crate) mod fairness;
 mod joint;
@@ -41,6 +42,7 @@ pub mod measure;
 mod model;
 mod options;
 mod placement;
+mod rows;
 mod solve;
 mod start;
 

@@ -2,83 +2,22 @@
 //!
 //! A *node* is a joint, or one of the free G2 points between joints that more than one element a span brings
 //! (4.6). Its block holds position, frame (unit tangent and normals) and curvature components in the frame; an
-//! *element*'s block holds the scalars of its two ends, and what a G1 or G0 joint does not share. At each end
-//!
-//! ```text
-//! P = p      P' = v t      P'' = v² κ + β t      κ = k₁ n₁ + k₂ n₂
-//! ```
-//!
-//! which is the thesis's (4.7) and (4.8) with `v` for `m²` and `β` for `α m²`: the same curves, but linear in `v`
-//! and `β`, which lets Newton's method take far longer steps. `v > 0` is the domain. The frame turns with its
-//! tangent without twist, so the components `k` go on meaning the same while the tangent moves. A point that moves
-//! along its tangent follows the osculating parabola `p + s t + ½ s² κ`: a free node may slide along the curve without
-//! changing it, and a straight step would leave it.
+//! *element*'s block holds the scalars of its two ends, and what a G1 or G0 joint does not share. What an end is made
+//! of, and how it moves, [`super::end`] knows; what an element costs, [`super::rows`].
 
-use super::fairness::{
-    Dimension, Exterior, Functional, add_evenness, density, density_derivatives, evenness,
-};
+use super::end::{Coordinate, End, SideStep, row_of};
+use super::fairness::{Dimension, Exterior, Functional, density, evenness};
 use super::joint::{Continuity, Curve, Given, Joint};
+use super::rows::{derivatives, row_derivatives};
 use crate::basis::hermite;
 use crate::basis::quadrature::Rule;
 use crate::solve::{BlockList, Problem, packed};
 use core::ops::Range;
-use nalgebra::{SMatrix, SVector};
-
-/// One end of an element: what the rows `P, P', P''` are made of.
-#[derive(Clone, Copy)]
-pub(super) struct End<const D: usize> {
-    pub(super) point: SVector<f64, D>,
-    /// Row 0 is the tangent, the others are normals.
-    pub(super) frame: [SVector<f64, D>; D],
-    /// Curvature components along the normals; the last entry is unused.
-    pub(super) curvature: [f64; D],
-    /// `|C'|`.
-    pub(super) speed: f64,
-    /// The tangential part `β` of `C''`.
-    pub(super) stretch: f64,
-}
-
-impl<const D: usize> End<D> {
-    pub(super) fn curvature_vector(&self) -> SVector<f64, D> {
-        let mut sum = SVector::zeros();
-        for j in 1..D {
-            sum += self.frame[j] * self.curvature[j - 1];
-        }
-        sum
-    }
-
-    /// `P, P', P''`.
-    pub(super) fn rows(&self) -> [SVector<f64, D>; 3] {
-        let tangent = self.frame[0];
-        [
-            self.point,
-            tangent * self.speed,
-            self.curvature_vector() * (self.speed * self.speed) + tangent * self.stretch,
-        ]
-    }
-}
-
-/// The Hermite row (`C(0), C'(0), C''(0), C''(1), C'(1), C(1)`) of the `order`-th derivative at an end.
-#[inline]
-pub(super) const fn row_of(end: usize, order: usize) -> usize {
-    if end == 0 { order } else { 5 - order }
-}
+use nalgebra::SVector;
 
 /// Numbers of the state that describe a frame and curvature components.
 const fn side_len(d: usize) -> usize {
     d * d + d
-}
-
-/// A coordinate of an end in the order `p (D), tangent (D − 1), curvature (D − 1), v, β`; or the turn of a
-/// curvature of fixed size about its tangent.
-#[derive(Clone, Copy, PartialEq)]
-enum Coordinate {
-    Point(usize),
-    Tangent(usize),
-    Curvature(usize),
-    Turn,
-    Speed,
-    Stretch,
 }
 
 /// The most local unknowns of an element in space, 9 an end.
@@ -286,150 +225,6 @@ impl<const D: usize> Model<'_, D> {
             sum += 0.5 * (state[at] + state[at + 2]);
         }
         sum
-    }
-}
-
-/// `C', C'', C'''` of an element at a point of a rule.
-#[inline]
-fn derivatives<const D: usize>(rows: &[SVector<f64, D>; 6], basis: &[[f64; 6]; 4]) -> [SVector<f64, D>; 3] {
-    core::array::from_fn(|k| {
-        let mut sum = SVector::zeros();
-        for a in 0..6 {
-            sum += rows[a] * basis[k + 1][a];
-        }
-        sum
-    })
-}
-
-/// The functional of an element by its Hermite rows.
-pub(super) fn row_cost<const D: usize>(
-    functional: Functional,
-    rule: &Rule,
-    rows: &[SVector<f64, D>; 6],
-) -> f64
-where
-    Dimension<D>: Exterior<D>,
-{
-    let mut sum = 0.0;
-    for (t, weight) in rule.iter() {
-        sum += weight * density(functional, &derivatives(rows, &hermite::basis(t)));
-    }
-    sum
-}
-
-/// The cost of an element with gradient and Hessian by its Hermite rows; of the Hessian, blocks `[a][b]`, `b <= a`.
-struct RowDerivatives<const D: usize> {
-    cost: f64,
-    gradient: [SVector<f64, D>; 6],
-    hessian: [[SMatrix<f64, D, D>; 6]; 6],
-}
-
-fn row_derivatives<const D: usize>(
-    functional: Functional,
-    gauge: f64,
-    rule: &Rule,
-    rows: &[SVector<f64, D>; 6],
-) -> RowDerivatives<D>
-where
-    Dimension<D>: Exterior<D>,
-{
-    let mut sum =
-        RowDerivatives { cost: 0.0, gradient: [SVector::zeros(); 6], hessian: [[SMatrix::zeros(); 6]; 6] };
-    for (t, weight) in rule.iter() {
-        let basis = hermite::basis(t);
-        let d = derivatives(rows, &basis);
-        let mut at = density_derivatives(functional, &d);
-        if gauge > 0.0 {
-            add_evenness(gauge, &d, &mut at);
-        }
-        sum.cost += weight * at.value;
-        // The full block h[k][l] for any k, l.
-        let block = |k: usize, l: usize| if k >= l { at.hessian[k][l] } else { at.hessian[l][k].transpose() };
-        for b in 0..6 {
-            let column: [SMatrix<f64, D, D>; 3] = core::array::from_fn(|k| {
-                (block(k, 0) * basis[1][b] + block(k, 1) * basis[2][b] + block(k, 2) * basis[3][b]) * weight
-            });
-            for k in 0..3 {
-                sum.gradient[b] += at.gradient[k] * (weight * basis[k + 1][b]);
-            }
-            for a in b..6 {
-                sum.hessian[a][b] +=
-                    column[0] * basis[1][a] + column[1] * basis[2][a] + column[2] * basis[3][a];
-            }
-        }
-    }
-    sum
-}
-
-impl<const D: usize> End<D> {
-    /// The derivative of the curvature vector by its turn about the tangent; space only.
-    fn turned(&self) -> SVector<f64, D> {
-        self.frame[D - 1] * self.curvature[0] - self.frame[1] * self.curvature[1]
-    }
-
-    /// The derivatives of `P, P', P''` by a coordinate.
-    fn tangent_map(&self, coordinate: Coordinate) -> [SVector<f64, D>; 3] {
-        let zero = SVector::zeros();
-        let (tangent, speed) = (self.frame[0], self.speed);
-        match coordinate {
-            Coordinate::Point(d) => {
-                let mut unit = zero;
-                unit[d] = 1.0;
-                [unit, zero, zero]
-            }
-            Coordinate::Tangent(j) => {
-                let normal = self.frame[j + 1];
-                let bend = normal * self.stretch - tangent * (speed * speed * self.curvature[j]);
-                [zero, normal * speed, bend]
-            }
-            Coordinate::Curvature(j) => [zero, zero, self.frame[j + 1] * (speed * speed)],
-            Coordinate::Turn => [zero, zero, self.turned() * (speed * speed)],
-            Coordinate::Speed => [zero, tangent, self.curvature_vector() * (2.0 * speed)],
-            Coordinate::Stretch => [zero, zero, tangent],
-        }
-    }
-
-    /// The second derivative by two coordinates of `point·P + first·P' + second·P''`.
-    ///
-    /// A tangent turns by `t(ω) = t cos|ω| + (ω/|ω|) sin|ω|`, its normals with it without twist.
-    fn second_map(
-        &self,
-        one: Coordinate,
-        other: Coordinate,
-        point: &SVector<f64, D>,
-        first: &SVector<f64, D>,
-        second: &SVector<f64, D>,
-    ) -> f64 {
-        use Coordinate::{Curvature, Point, Speed, Stretch, Tangent, Turn};
-        let (tangent, speed) = (self.frame[0], self.speed);
-        let normal = |j: usize| self.frame[j + 1];
-        match (one, other) {
-            (Point(i), Point(j)) => tangent[i] * tangent[j] * point.dot(&self.curvature_vector()),
-            (Speed, Speed) => 2.0 * second.dot(&self.curvature_vector()),
-            (Speed, Tangent(j)) | (Tangent(j), Speed) => {
-                first.dot(&normal(j)) - 2.0 * speed * self.curvature[j] * second.dot(&tangent)
-            }
-            (Speed, Curvature(j)) | (Curvature(j), Speed) => 2.0 * speed * second.dot(&normal(j)),
-            (Speed, Turn) | (Turn, Speed) => 2.0 * speed * second.dot(&self.turned()),
-            (Stretch, Tangent(j)) | (Tangent(j), Stretch) => second.dot(&normal(j)),
-            (Tangent(i), Tangent(j)) => {
-                let bend = normal(j) * self.curvature[i] + normal(i) * self.curvature[j];
-                let mut sum = -0.5 * speed * speed * second.dot(&bend);
-                if i == j {
-                    sum -= speed * first.dot(&tangent) + self.stretch * second.dot(&tangent);
-                }
-                sum
-            }
-            (Curvature(i), Tangent(j)) | (Tangent(j), Curvature(i)) if i == j => {
-                -speed * speed * second.dot(&tangent)
-            }
-            (Turn, Tangent(j)) | (Tangent(j), Turn) => {
-                let turned = if j == 0 { -self.curvature[1] } else { self.curvature[0] };
-                -speed * speed * turned * second.dot(&tangent)
-            }
-            (Turn, Turn) => -speed * speed * second.dot(&self.curvature_vector()),
-            _ => 0.0,
-        }
     }
 }
 
@@ -663,81 +458,3 @@ where
 const SKEWS: [f64; 2] = [0.15, -0.15];
 /// A curve that became longer than its start by this factor grows without limit.
 const RUNAWAY: f64 = 100.0;
-
-/// A step of what a side holds: its tangent and its curvature components.
-#[derive(Clone, Copy)]
-struct SideStep<const D: usize> {
-    turn: [f64; D],
-    bend: [f64; D],
-    twist: f64,
-}
-
-impl<const D: usize> Default for SideStep<D> {
-    fn default() -> Self {
-        Self { turn: [0.0; D], bend: [0.0; D], twist: 0.0 }
-    }
-}
-
-impl<const D: usize> SideStep<D> {
-    fn note(&mut self, coordinate: Coordinate, step: f64) {
-        match coordinate {
-            Coordinate::Tangent(j) => self.turn[j] = step,
-            Coordinate::Curvature(j) => self.bend[j] = step,
-            Coordinate::Turn => self.twist = step,
-            _ => {}
-        }
-    }
-
-    /// Turns the frame of a side, and adds to its curvature components.
-    fn apply(&self, side: &mut [f64]) {
-        let (frame, curvature) = side.split_at_mut(D * D);
-        for j in 0..D {
-            curvature[j] += self.bend[j];
-        }
-        if self.twist != 0.0 {
-            let (sin, cos) = (libm::sin(self.twist), libm::cos(self.twist));
-            let (one, two) = (curvature[0], curvature[1]);
-            curvature[0] = cos * one - sin * two;
-            curvature[1] = sin * one + cos * two;
-        }
-        let mut square = 0.0;
-        for turn in self.turn {
-            square += turn * turn;
-        }
-        if square == 0.0 {
-            return;
-        }
-        let angle = libm::sqrt(square);
-        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-        let rows: [SVector<f64, D>; D] = core::array::from_fn(|j| SVector::from_fn(|d, _| frame[D * j + d]));
-        // The unit normal towards which the tangent turns.
-        let mut towards = SVector::<f64, D>::zeros();
-        for j in 1..D {
-            towards += rows[j] * (self.turn[j - 1] / angle);
-        }
-        let mut turned = rows;
-        turned[0] = rows[0] * cos + towards * sin;
-        for j in 1..D {
-            let along = self.turn[j - 1] / angle;
-            turned[j] = rows[j] + (towards * (cos - 1.0) - rows[0] * sin) * along;
-        }
-        orthonormalise(&mut turned);
-        for j in 0..D {
-            for d in 0..D {
-                frame[D * j + d] = turned[j][d];
-            }
-        }
-    }
-}
-
-/// Gram and Schmidt, so that rounding does not add up over the iterations.
-pub(super) fn orthonormalise<const D: usize>(frame: &mut [SVector<f64, D>; D]) {
-    for j in 0..D {
-        let mut row = frame[j];
-        for i in 0..j {
-            let along = row.dot(&frame[i]);
-            row -= frame[i] * along;
-        }
-        frame[j] = row / libm::sqrt(row.dot(&row));
-    }
-}

@@ -6,9 +6,10 @@
 //! their neighbour. Speeds and stretches are those of the quintic that fits a circular arc best; the thesis starts
 //! with the chord and 0, from where twice as many iterations are needed.
 
+use super::end::{End, orthonormalise};
 use super::fairness::{Dimension, Exterior};
 use super::joint::{Continuity, Given, Joint};
-use super::model::{End, Model, orthonormalise};
+use super::model::Model;
 use super::placement::Placement;
 use crate::basis::hermite;
 use nalgebra::SVector;

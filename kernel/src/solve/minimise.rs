@@ -6,7 +6,7 @@ use super::ordering::order_blocks;
 use super::problem::{BlockList, Problem, packed, packed_len};
 use super::relax;
 use super::report::{Control, Observer, Outcome, Record, Status};
-use super::trust_region::{self, Vectors};
+use super::trust_region::{self, Radius, Vectors};
 use super::workspace::{Indices, Layout, Workspace, WorkspaceTooSmall};
 
 /// How to iterate.
@@ -154,7 +154,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             return outcome;
         }
         let root = libm::sqrt(self.problem.elements().max(1) as f64);
-        let mut radius = settings.first_radius * root;
+        let mut radius = Radius(settings.first_radius * root);
         let least_radius = 1e-9 * root;
         let mut shift = 0.0;
         let mut polish = POLISH;
@@ -178,7 +178,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                 } = &mut self.work;
                 let envelope = Envelope { first: row_first, start: row_start };
                 let mut vectors = Vectors { gradient, step, scratch, direction, factor };
-                trust_region::solve(&envelope, matrix, &mut vectors, radius, shift)
+                trust_region::solve(&envelope, matrix, &mut vectors, radius.0, shift)
             };
             let Some(step) = step else {
                 outcome.status = Status::Stalled;
@@ -196,11 +196,11 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             if near {
                 if step.predicted <= floor || polish == 0 {
                     // A ball that shrank to nothing proves nothing; otherwise there is nothing left to gain.
-                    let whole = step.shift == 0.0 || radius > 1e3 * least_radius;
+                    let whole = step.shift == 0.0 || radius.0 > 1e3 * least_radius;
                     if whole && explorations > 0 && self.hop(state, value) {
                         explorations -= 1;
                         polish = POLISH;
-                        radius = settings.first_radius * root;
+                        radius = Radius(settings.first_radius * root);
                         shift = 0.0;
                         value = self.linearise(state);
                         continue;
@@ -226,13 +226,8 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             let tried = self.try_step(state, 1e-3 * step.predicted / self.problem.elements() as f64);
             let actual = value - tried;
             let slack = if step.predicted <= 1e3 * floor { floor } else { 0.0 };
-            let ratio = (actual + slack) / (step.predicted + slack);
-            let accepted = tried.is_finite() && ratio > 1e-4;
-            if !tried.is_finite() || ratio < 0.25 {
-                radius = 0.25 * step.length;
-            } else if ratio > 0.75 && step.length > 0.8 * radius {
-                radius = 2.5 * step.length;
-            }
+            let ratio = tried.is_finite().then(|| (actual + slack) / (step.predicted + slack));
+            let accepted = radius.judge(ratio, step.length);
             outcome.iterations += 1;
             let record = Record {
                 value: if accepted { tried } else { value },
@@ -259,7 +254,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                 outcome.status = Status::Unbounded;
                 return outcome;
             }
-            if radius < least_radius {
+            if radius.0 < least_radius {
                 outcome.status = Status::Stalled;
                 return outcome;
             }

@@ -7,7 +7,7 @@
 
 use super::envelope::Envelope;
 use super::problem::{BlockList, Problem, packed, packed_len};
-use super::trust_region::{self, Vectors};
+use super::trust_region::{self, Radius, Vectors};
 use super::workspace::{Indices, Workspace};
 
 /// The first radius of an element's own trust region, in natural sizes.
@@ -101,7 +101,7 @@ fn relax_element<P: Problem + ?Sized>(
     let (all_gradient, all_matrix) = slots.split_at_mut(size);
     let all_matrix = &mut all_matrix[..packed_len(size)];
 
-    let mut radius = FIRST_RADIUS;
+    let mut radius = Radius(FIRST_RADIUS);
     let mut shift = 0.0;
     let mut moved = true;
     let mut linearisations = 0;
@@ -149,7 +149,9 @@ fn relax_element<P: Problem + ?Sized>(
             }
         }
         let mut vectors = Vectors { gradient, step, scratch, direction, factor };
-        let Some(found) = trust_region::solve(&envelope, matrix, &mut vectors, radius, shift) else { break };
+        let Some(found) = trust_region::solve(&envelope, matrix, &mut vectors, radius.0, shift) else {
+            break;
+        };
         shift = found.shift;
         if found.predicted <= enough {
             break;
@@ -166,13 +168,8 @@ fn relax_element<P: Problem + ?Sized>(
             }
         }
         let tried = problem.cost(element, spare);
-        let ratio = (value - tried) / found.predicted;
-        let accepted = tried.is_finite() && ratio > 1e-4;
-        if !tried.is_finite() || ratio < 0.25 {
-            radius = 0.25 * found.length;
-        } else if ratio > 0.75 && found.length > 0.8 * radius {
-            radius = 2.5 * found.length;
-        }
+        let ratio = tried.is_finite().then(|| (value - tried) / found.predicted);
+        let accepted = radius.judge(ratio, found.length);
         for &block in list.iter().filter(|&&block| private(block)) {
             let range = problem.state_range(block);
             if accepted {

@@ -6,6 +6,32 @@
 
 use super::envelope::{Envelope, dot};
 
+/// The radius of a trust region, and how it learns from steps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Radius(pub(super) f64);
+
+impl Radius {
+    /// Judges a step of the given length by the part of the promised decrease that it brought; `None` where the cost is
+    /// not finite. Returns whether to take it.
+    pub(super) fn judge(&mut self, ratio: Option<f64>, length: f64) -> bool {
+        match ratio {
+            Some(ratio) if ratio >= 0.25 => {
+                if ratio > 0.75 && length > 0.8 * self.0 {
+                    self.0 = 2.5 * length;
+                }
+                true
+            }
+            other => {
+                self.0 = 0.25 * length;
+                other.is_some_and(|ratio| ratio > LEAST_RATIO)
+            }
+        }
+    }
+}
+
+/// A step that brings less than this part of what it promised is refused.
+const LEAST_RATIO: f64 = 1e-4;
+
 /// The step that was found.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {

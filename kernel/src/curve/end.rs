@@ -1,0 +1,215 @@
+//! An end of an element: what its rows are made of, how they change with each unknown, and how a step moves it.
+//!
+//! ```text
+//! P = p      P' = v t      P'' = v² κ + β t      κ = k₁ n₁ + k₂ n₂
+//! ```
+//!
+//! which is the thesis's (4.7) and (4.8) with `v` for `m²` and `β` for `α m²`: the same curves, but linear in `v`
+//! and `β`, which lets Newton's method take far longer steps. `v > 0` is the domain. The frame turns with its
+//! tangent without twist, so the components `k` go on meaning the same while the tangent moves. A point that moves
+//! along its tangent follows the osculating parabola `p + s t + ½ s² κ`: a free node may slide along the curve without
+//! changing it, and a straight step would leave it.
+
+use nalgebra::SVector;
+
+/// One end of an element: what the rows `P, P', P''` are made of.
+#[derive(Clone, Copy)]
+pub(super) struct End<const D: usize> {
+    pub(super) point: SVector<f64, D>,
+    /// Row 0 is the tangent, the others are normals.
+    pub(super) frame: [SVector<f64, D>; D],
+    /// Curvature components along the normals; the last entry is unused.
+    pub(super) curvature: [f64; D],
+    /// `|C'|`.
+    pub(super) speed: f64,
+    /// The tangential part `β` of `C''`.
+    pub(super) stretch: f64,
+}
+
+impl<const D: usize> End<D> {
+    pub(super) fn curvature_vector(&self) -> SVector<f64, D> {
+        let mut sum = SVector::zeros();
+        for j in 1..D {
+            sum += self.frame[j] * self.curvature[j - 1];
+        }
+        sum
+    }
+
+    /// `P, P', P''`.
+    pub(super) fn rows(&self) -> [SVector<f64, D>; 3] {
+        let tangent = self.frame[0];
+        [
+            self.point,
+            tangent * self.speed,
+            self.curvature_vector() * (self.speed * self.speed) + tangent * self.stretch,
+        ]
+    }
+}
+
+/// The Hermite row (`C(0), C'(0), C''(0), C''(1), C'(1), C(1)`) of the `order`-th derivative at an end.
+#[inline]
+pub(super) const fn row_of(end: usize, order: usize) -> usize {
+    if end == 0 { order } else { 5 - order }
+}
+
+/// A coordinate of an end in the order `p (D), tangent (D − 1), curvature (D − 1), v, β`; or the turn of a
+/// curvature of fixed size about its tangent.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Coordinate {
+    Point(usize),
+    Tangent(usize),
+    Curvature(usize),
+    Turn,
+    Speed,
+    Stretch,
+}
+
+impl<const D: usize> End<D> {
+    /// The derivative of the curvature vector by its turn about the tangent; space only.
+    fn turned(&self) -> SVector<f64, D> {
+        self.frame[D - 1] * self.curvature[0] - self.frame[1] * self.curvature[1]
+    }
+
+    /// The derivatives of `P, P', P''` by a coordinate.
+    pub(super) fn tangent_map(&self, coordinate: Coordinate) -> [SVector<f64, D>; 3] {
+        let zero = SVector::zeros();
+        let (tangent, speed) = (self.frame[0], self.speed);
+        match coordinate {
+            Coordinate::Point(d) => {
+                let mut unit = zero;
+                unit[d] = 1.0;
+                [unit, zero, zero]
+            }
+            Coordinate::Tangent(j) => {
+                let normal = self.frame[j + 1];
+                let bend = normal * self.stretch - tangent * (speed * speed * self.curvature[j]);
+                [zero, normal * speed, bend]
+            }
+            Coordinate::Curvature(j) => [zero, zero, self.frame[j + 1] * (speed * speed)],
+            Coordinate::Turn => [zero, zero, self.turned() * (speed * speed)],
+            Coordinate::Speed => [zero, tangent, self.curvature_vector() * (2.0 * speed)],
+            Coordinate::Stretch => [zero, zero, tangent],
+        }
+    }
+
+    /// The second derivative by two coordinates of `point·P + first·P' + second·P''`.
+    ///
+    /// A tangent turns by `t(ω) = t cos|ω| + (ω/|ω|) sin|ω|`, its normals with it without twist.
+    pub(super) fn second_map(
+        &self,
+        one: Coordinate,
+        other: Coordinate,
+        point: &SVector<f64, D>,
+        first: &SVector<f64, D>,
+        second: &SVector<f64, D>,
+    ) -> f64 {
+        use Coordinate::{Curvature, Point, Speed, Stretch, Tangent, Turn};
+        let (tangent, speed) = (self.frame[0], self.speed);
+        let normal = |j: usize| self.frame[j + 1];
+        match (one, other) {
+            (Point(i), Point(j)) => tangent[i] * tangent[j] * point.dot(&self.curvature_vector()),
+            (Speed, Speed) => 2.0 * second.dot(&self.curvature_vector()),
+            (Speed, Tangent(j)) | (Tangent(j), Speed) => {
+                first.dot(&normal(j)) - 2.0 * speed * self.curvature[j] * second.dot(&tangent)
+            }
+            (Speed, Curvature(j)) | (Curvature(j), Speed) => 2.0 * speed * second.dot(&normal(j)),
+            (Speed, Turn) | (Turn, Speed) => 2.0 * speed * second.dot(&self.turned()),
+            (Stretch, Tangent(j)) | (Tangent(j), Stretch) => second.dot(&normal(j)),
+            (Tangent(i), Tangent(j)) => {
+                let bend = normal(j) * self.curvature[i] + normal(i) * self.curvature[j];
+                let mut sum = -0.5 * speed * speed * second.dot(&bend);
+                if i == j {
+                    sum -= speed * first.dot(&tangent) + self.stretch * second.dot(&tangent);
+                }
+                sum
+            }
+            (Curvature(i), Tangent(j)) | (Tangent(j), Curvature(i)) if i == j => {
+                -speed * speed * second.dot(&tangent)
+            }
+            (Turn, Tangent(j)) | (Tangent(j), Turn) => {
+                let turned = if j == 0 { -self.curvature[1] } else { self.curvature[0] };
+                -speed * speed * turned * second.dot(&tangent)
+            }
+            (Turn, Turn) => -speed * speed * second.dot(&self.curvature_vector()),
+            _ => 0.0,
+        }
+    }
+}
+
+/// A step of what a side holds: its tangent and its curvature components.
+#[derive(Clone, Copy)]
+pub(super) struct SideStep<const D: usize> {
+    turn: [f64; D],
+    bend: [f64; D],
+    twist: f64,
+}
+
+impl<const D: usize> Default for SideStep<D> {
+    fn default() -> Self {
+        Self { turn: [0.0; D], bend: [0.0; D], twist: 0.0 }
+    }
+}
+
+impl<const D: usize> SideStep<D> {
+    pub(super) fn note(&mut self, coordinate: Coordinate, step: f64) {
+        match coordinate {
+            Coordinate::Tangent(j) => self.turn[j] = step,
+            Coordinate::Curvature(j) => self.bend[j] = step,
+            Coordinate::Turn => self.twist = step,
+            _ => {}
+        }
+    }
+
+    /// Turns the frame of a side, and adds to its curvature components.
+    pub(super) fn apply(&self, side: &mut [f64]) {
+        let (frame, curvature) = side.split_at_mut(D * D);
+        for j in 0..D {
+            curvature[j] += self.bend[j];
+        }
+        if self.twist != 0.0 {
+            let (sin, cos) = (libm::sin(self.twist), libm::cos(self.twist));
+            let (one, two) = (curvature[0], curvature[1]);
+            curvature[0] = cos * one - sin * two;
+            curvature[1] = sin * one + cos * two;
+        }
+        let mut square = 0.0;
+        for turn in self.turn {
+            square += turn * turn;
+        }
+        if square == 0.0 {
+            return;
+        }
+        let angle = libm::sqrt(square);
+        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+        let rows: [SVector<f64, D>; D] = core::array::from_fn(|j| SVector::from_fn(|d, _| frame[D * j + d]));
+        // The unit normal towards which the tangent turns.
+        let mut towards = SVector::<f64, D>::zeros();
+        for j in 1..D {
+            towards += rows[j] * (self.turn[j - 1] / angle);
+        }
+        let mut turned = rows;
+        turned[0] = rows[0] * cos + towards * sin;
+        for j in 1..D {
+            let along = self.turn[j - 1] / angle;
+            turned[j] = rows[j] + (towards * (cos - 1.0) - rows[0] * sin) * along;
+        }
+        orthonormalise(&mut turned);
+        for j in 0..D {
+            for d in 0..D {
+                frame[D * j + d] = turned[j][d];
+            }
+        }
+    }
+}
+
+/// Gram and Schmidt, so that rounding does not add up over the iterations.
+pub(super) fn orthonormalise<const D: usize>(frame: &mut [SVector<f64, D>; D]) {
+    for j in 0..D {
+        let mut row = frame[j];
+        for i in 0..j {
+            let along = row.dot(&frame[i]);
+            row -= frame[i] * along;
+        }
+        frame[j] = row / libm::sqrt(row.dot(&row));
+    }
+}
