@@ -4,3 +4,5 @@ pub mod appendix;
 pub mod ceres;
 pub mod compare;
 pub mod curves;
+pub mod paths;
+pub mod toolchain;

@@ -1,0 +1,113 @@
+//! The C examples, built as a user builds them: their figures, their files, their refusals.
+
+use minvar::curve::{self, Curve, Element, Joint, Options, Quantity};
+use minvar::solve::Silent;
+use minvar::toolpath::Plane;
+use minvar_tests::paths::{assert_within, interpret};
+use minvar_tests::toolchain::{compile, library, must, root, scratch};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+fn coving() -> &'static Path {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    PROGRAM.get_or_init(|| {
+        let program = scratch().join("01_coving");
+        let mut command = compile("01_coving.c");
+        command.arg(root().join("c_examples/01_coving.c")).arg(library().join("libminvar.a"));
+        must(command.arg("-lm").arg("-o").arg(&program), "compiling the coving example");
+        program
+    })
+}
+
+/// A folder of its own for a test.
+fn folder(name: &str) -> PathBuf {
+    let place = scratch().join(name);
+    let _ = fs::remove_dir_all(&place);
+    fs::create_dir_all(&place).expect("the target directory can be written");
+    place
+}
+
+/// The numbers of the table's row that starts with `name`.
+fn row(text: &str, name: &str) -> Vec<f64> {
+    let line = text
+        .lines()
+        .find(|line| line.starts_with(name))
+        .unwrap_or_else(|| panic!("no row `{name}`:\n{text}"));
+    line[name.len()..].split_whitespace().map(|word| word.parse().expect("a number")).collect()
+}
+
+fn close(found: f64, wanted: f64, relative: f64) {
+    assert!((found / wanted - 1.0).abs() <= relative, "{found} is not {wanted}");
+}
+
+#[test]
+fn the_coving_has_the_figures_of_the_true_curve_and_clears_the_duct() {
+    let place = folder("coving");
+    let text = must(Command::new(coving()).arg("c.ngc").arg("0.25").current_dir(&place), "the example");
+    // curvature at the wall, length, V, E, curvature at the end, clearance, iterations
+    let one = row(&text, "Fig. 4.22, one element");
+    close(one[2], 0.00835186064, 1e-7);
+    let fine = row(&text, "Fig. 4.22, 8 elements");
+    close(fine[1], 23.939306, 5e-8);
+    close(fine[2], 0.0083516963, 1e-7);
+    close(fine[3], 0.189328, 1e-5);
+    close(fine[4], -0.06540, 1e-4);
+    let clear = row(&text, "clear of the duct");
+    close(clear[5], 0.25, 1e-6);
+    assert!(clear[0] > 0.27, "the published curvature does not clear a square duct: {}", clear[0]);
+
+    // The printed program against the curve, measured densely and independently.
+    let joints = [
+        Joint::at([0.5, -12.0, 0.0])
+            .with_tangent(Quantity::fixed([0.0, 1.0, 0.0]))
+            .with_curvature(Quantity::fixed([clear[0], 0.0, 0.0])),
+        Joint::at([20.0, -0.5, 0.0]).with_tangent(Quantity::fixed([1.0, 0.0, 0.0])),
+    ];
+    let curve = Curve { joints: &joints, closed: false };
+    let options = Options { elements_per_span: 8, ..Options::DEFAULT };
+    let mut workspace = vec![0.0; curve::workspace_len(&curve, &options).expect("good data")];
+    let mut elements = [Element::ZERO; 8];
+    curve::solve(&curve, &options, &mut workspace, &mut elements, &mut [], &mut Silent).expect("good data");
+    let program = fs::read_to_string(place.join("c.ngc")).expect("the program was written");
+    let (start, pieces) = interpret(&program, Plane::Xy);
+    assert_eq!(start, [0.5, -12.0, 0.0]);
+    assert!(program.starts_with("G20\n") && program.ends_with("M2\n"));
+    // The curvature is printed with six digits: the curve is known to 1e-5.
+    let found = assert_within(&elements, &pieces, 0.001 + 1e-5, 400);
+    assert!(found > 0.0005, "arcs should use their tolerance: {found}");
+
+    // No sampled point of the path is in the duct or nearer to it than was asked for.
+    for piece in &pieces {
+        for k in 0..=100 {
+            let [x, y, _] = piece.point(f64::from(k) / 100.0);
+            let (dx, dy) = ((x - 6.0).max(0.0), (-6.0 - y).max(0.0));
+            assert!(dx.hypot(dy) > 0.25 - 0.0011, "({x}, {y}) is too near to the duct");
+        }
+    }
+    assert_eq!(fs::read_dir(&place).expect("the folder").count(), 1, "nothing but the program is left");
+}
+
+fn refused(arguments: &[&str], code: i32, says: &str) {
+    let output: Output = Command::new(coving()).args(arguments).output().expect("the example runs");
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
+    assert!(error.contains(says), "{arguments:?}: {error}");
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_said_and_leaves_nothing() {
+    let place = folder("refused");
+    let inside = place.join("missing/c.ngc");
+    refused(&[&inside.to_string_lossy()], 3, "No such file");
+    refused(&["/dev/null/c.ngc"], 3, "Not a directory");
+    assert_eq!(fs::read_dir(&place).expect("the folder").count(), 0);
+}
+
+#[test]
+fn a_clearance_out_of_range_is_refused() {
+    for wrong in ["-1", "nan", "4"] {
+        refused(&["never.ngc", wrong], 2, "clearance");
+    }
+}
