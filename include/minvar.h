@@ -211,7 +211,7 @@ typedef struct minvar_options {
     uint32_t elements_per_span;
     // Gauss-Lobatto points an element, 12 to 32. Fewer than 20 can be cheated by an optimiser. Default 32.
     uint32_t quadrature_points;
-    // The largest number of iterations (trial steps). Default 200.
+    // The largest number of iterations (trial steps). Default 500.
     uint32_t max_iterations;
     // 2 for a planar curve, 3 for a space curve, 0 to find out: planar where all data lie in a plane. Default 0.
     uint32_t dimension;

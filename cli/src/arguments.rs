@@ -60,7 +60,7 @@ pub(crate) struct CurveArguments {
     pub(crate) elements_per_span: u32,
 
     /// Stop after so many iterations
-    #[arg(long, default_value_t = 200, value_name = "N")]
+    #[arg(long, default_value_t = 500, value_name = "N")]
     pub(crate) max_iterations: u32,
 
     /// Print no figures

@@ -91,7 +91,7 @@ pub struct minvar_options {
     pub elements_per_span: u32,
     /// Gauss-Lobatto points an element, 12 to 32. Fewer than 20 can be cheated by an optimiser. Default 32.
     pub quadrature_points: u32,
-    /// The largest number of iterations (trial steps). Default 200.
+    /// The largest number of iterations (trial steps). Default 500.
     pub max_iterations: u32,
     /// 2 for a planar curve, 3 for a space curve, 0 to find out: planar where all data lie in a plane. Default 0.
     pub dimension: u32,

@@ -7,9 +7,9 @@
 use minvar_tests::toolchain::{WARNINGS, compile, compiler, library, must, root, run, scratch};
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::fs;
 
 fn source(name: &str) -> PathBuf {
     root().join("tests/c").join(name)

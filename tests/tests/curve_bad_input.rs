@@ -29,7 +29,9 @@ fn attempt(joints: &[Joint], closed: bool, options: &Options) -> (Result<Report,
     let mut elements = vec![MARKER; elements_len(&curve, options).min(100_000)];
     let result = solve(&curve, options, &mut workspace, &mut elements, &mut [], &mut Silent);
     if let Err(error) = result {
-        assert_eq!(asked, Err(error), "both calls find the same error");
+        // What only the start values show, the first call cannot find.
+        let late = matches!(error, CurveError::CurvatureNeedsTangent { .. });
+        assert!(asked == Err(error) || (late && asked.is_ok()), "both calls find the same error: {asked:?}");
         assert!(elements.iter().all(|element| *element == MARKER), "an error writes nothing");
     } else {
         assert!(asked.is_ok());
@@ -208,7 +210,6 @@ fn a_curvature_along_a_curve_of_unknown_direction_is_refused() {
 fn a_fixed_curvature_is_kept_or_refused_where_the_start_tangent_runs_along_it() {
     // A circle through the three points: its tangents at the first two are along y, and so are the given curvatures; the
     // chords are not.
-    // FAILS: the start tangent keeps its direction, and the curvature becomes 0 as if it had not been given.
     let points = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 1.0, 0.0]];
     for (which, sign) in [(0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0)] {
         let mut joints = points.map(Joint::at);
@@ -277,7 +278,6 @@ fn sizes_that_the_arithmetic_cannot_hold_are_refused() {
 
 #[test]
 fn points_whose_distance_overflows_are_too_far_apart_and_not_coincident() {
-    // FAILS: the extent overflows to infinity, of which every step is a small fraction: CoincidentJoints.
     let far = [Joint::at([-1e308, 0.0, 0.0]), Joint::at([1e308, 0.0, 0.0])];
     refuses(&far, CurveError::SizeOutOfRange, &[]);
 }

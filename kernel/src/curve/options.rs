@@ -14,7 +14,7 @@ pub struct Options {
     pub elements_per_span: u32,
     /// Gauss–Lobatto points an element, 12 to 32. Fewer than 20 can be cheated by an optimiser. Default 32.
     pub quadrature_points: u32,
-    /// The largest number of iterations (trial steps). Default 200.
+    /// The largest number of iterations (trial steps). Default 500.
     pub max_iterations: u32,
     /// 2 for a planar curve, 3 for a space curve, 0 to find out: planar where all data lie in a plane. Default 0.
     pub dimension: u32,
@@ -30,7 +30,7 @@ impl Options {
         functional: Functional::MVC,
         elements_per_span: 1,
         quadrature_points: 32,
-        max_iterations: 200,
+        max_iterations: 500,
         dimension: 0,
         relative_decrease: 1e-12,
     };

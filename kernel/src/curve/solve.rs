@@ -56,7 +56,8 @@ pub const fn elements_len(curve: &Curve<'_>, options: &Options) -> usize {
 /// fixed at them and on whether they lie in a plane, not on the numbers otherwise.
 ///
 /// # Errors
-/// Everything that [`solve()`] would find wrong with the data and options.
+/// Everything that [`solve()`] would find wrong with the data and options, but for
+/// [`CurveError::CurvatureNeedsTangent`], which shows with the start values.
 pub fn workspace_len(curve: &Curve<'_>, options: &Options) -> Result<usize, CurveError> {
     options.check()?;
     let unit = check(curve)?;
@@ -137,7 +138,7 @@ where
     }
     let (state, work) = workspace.split_at_mut(state_len);
 
-    model.natural_cost = Start { model: &model, place }.fill(state);
+    model.natural_cost = Start { model: &model, place }.fill(state)?;
     model.start_length = model.rough_length(state);
     let scale = functional_scale(options, place.unit);
     let mut passes = Passes { observer, records, scale, iterations: 0, linearisations: 0 };

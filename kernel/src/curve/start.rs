@@ -7,6 +7,7 @@
 //! with the chord and 0, from where twice as many iterations are needed.
 
 use super::end::{End, orthonormalise};
+use super::error::CurveError;
 use super::fairness::{Dimension, Exterior};
 use super::joint::{Continuity, Given, Joint};
 use super::model::Model;
@@ -20,6 +21,8 @@ const SPEED_BY_TURN: f64 = 0.00613;
 const STRETCH_BY_TURN: f64 = 0.0377;
 /// The speeds that are tried, the preferred first; another must be twice as fair.
 const SPEED_FACTORS: [f64; 5] = [1.0, 0.6, 1.6, 0.36, 2.5];
+/// A start tangent that leans from a given curvature by less than this (radians) does not tell on which side the curve goes.
+const UNDECIDED: f64 = 1e-6;
 /// Turnings are not trusted beyond this.
 const MOST_TURN: f64 = 4.0;
 
@@ -204,10 +207,13 @@ where
         let found = found.unwrap_or_else(SVector::zeros);
         let curvature = &data.curvature[side];
         if curvature.given != Given::FREE {
-            // A given curvature without a tangent: the tangent is perpendicular to it.
+            // A given curvature without a tangent: the tangent is perpendicular to it, if that leaves anything.
             let across = self.place.local_curvature(&curvature.value);
             if let Some(across) = unit(&across) {
-                return unit(&(found - across * found.dot(&across))).unwrap_or(found);
+                let beside = found - across * found.dot(&across);
+                if beside.dot(&beside) > UNDECIDED * UNDECIDED {
+                    return unit(&beside).unwrap_or(found);
+                }
             }
         }
         found
@@ -290,10 +296,32 @@ where
         rows_between(ends)
     }
 
+    /// The first joint at which a curvature is given but the start tangent runs along it: then nothing tells to which side
+    /// the curve goes.
+    fn undecided(&self, state: &[f64]) -> Option<usize> {
+        (0..self.joints().len()).find(|&joint| {
+            (0..2).any(|side| {
+                let data = &self.joints()[joint];
+                let given =
+                    data.curvature[side].given != Given::FREE && data.tangent[side].given == Given::FREE;
+                given
+                    && self.neighbour(joint, side).or(self.neighbour(joint, 1 - side)).is_some()
+                    && unit(&self.place.local_curvature(&data.curvature[side].value))
+                        .is_some_and(|across| across.dot(&self.tangent(joint, side, state)).abs() > UNDECIDED)
+            })
+        })
+    }
+
     /// Fills the state, and returns the sum of `1/length^power` over the elements: the natural cost.
-    pub(super) fn fill(&self, state: &mut [f64]) -> f64 {
+    ///
+    /// # Errors
+    /// [`CurveError::CurvatureNeedsTangent`].
+    pub(super) fn fill(&self, state: &mut [f64]) -> Result<f64, CurveError> {
         state.fill(0.0);
         self.points(state);
+        if let Some(joint) = self.undecided(state) {
+            return Err(CurveError::CurvatureNeedsTangent { joint });
+        }
         let model = self.model;
         let (spans, per_span, count) = (model.curve.spans(), model.per_span, self.joints().len());
         let mut natural = 0.0;
@@ -323,7 +351,7 @@ where
                 before = after;
             }
         }
-        natural
+        Ok(natural)
     }
 }
 
