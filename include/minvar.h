@@ -487,7 +487,8 @@ size_t minvar_curve_elements_len(const struct minvar_curve *curve, const struct 
 // The workspace, in doubles, that minvar_curve_solve() needs for these data and options. It depends on the options, on
 // the number of joints, on what is given there and on whether the data lie in a plane, not on the numbers otherwise.
 //
-// Errors: all that minvar_curve_solve() finds wrong with the data and options.
+// Errors: all that minvar_curve_solve() finds wrong with the data and options, but for MINVAR_CURVATURE_NEEDS_TANGENT,
+// which shows with the start values.
 enum minvar_code minvar_curve_workspace_len(const struct minvar_curve *curve,
                                             const struct minvar_options *options,
                                             size_t *len,

@@ -290,7 +290,8 @@ pub unsafe extern "C" fn minvar_curve_elements_len(
 /// The workspace, in doubles, that minvar_curve_solve() needs for these data and options. It depends on the options, on
 /// the number of joints, on what is given there and on whether the data lie in a plane, not on the numbers otherwise.
 ///
-/// Errors: all that minvar_curve_solve() finds wrong with the data and options.
+/// Errors: all that minvar_curve_solve() finds wrong with the data and options, but for MINVAR_CURVATURE_NEEDS_TANGENT,
+/// which shows with the start values.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn minvar_curve_workspace_len(
     curve: *const minvar_curve,
