@@ -141,7 +141,7 @@ pub extern "C" fn minvar_status_sentence(status: u32) -> *const c_char {
     let sentence = match status {
         0 => c"nothing was computed",
         1 => c"converged: the functional cannot be lowered by what the tolerance asks for",
-        2 => c"stalled: no further progress is possible in this precision; the gradient says how near the minimum is",
+        2 => c"stalled: no further progress is possible, or the elements are too coarse for the curve; take more elements a span",
         3 => c"stopped at the iteration limit: allow more iterations, or give better start values",
         4 => {
             c"unbounded: the curve grows without limit while the functional sinks; add a constraint, or choose a functional that has a minimum"

@@ -41,6 +41,7 @@ enum CurvatureFreedom {
 }
 
 /// A curve in its local system.
+#[derive(Clone, Copy)]
 pub(super) struct Model<'a, const D: usize> {
     pub(super) curve: Curve<'a>,
     pub(super) per_span: usize,
@@ -312,7 +313,9 @@ where
 
     fn cost(&self, element: usize, state: &[f64]) -> f64 {
         let ends = [self.end(element, 0, state), self.end(element, 1, state)];
-        if !ends.iter().all(|end| end.speed > 0.0) {
+        let chord = ends[1].point - ends[0].point;
+        let least = LEAST_SPEED * libm::sqrt(chord.dot(&chord));
+        if !ends.iter().all(|end| end.speed > least) {
             return f64::INFINITY;
         }
         self.cost_of_rows(&self.rows(element, state))
@@ -456,5 +459,8 @@ where
 
 /// The logarithms of the speed ratio between an element's first end and its middle in the starts that are tried.
 const SKEWS: [f64; 2] = [0.15, -0.15];
+/// The least speed at an end of an element, as a fraction of its chord: a quintic that nearly stops there is a bend of the
+/// parametrisation, not of the curve.
+const LEAST_SPEED: f64 = 0.02;
 /// A curve that became longer than its start by this factor grows without limit.
 const RUNAWAY: f64 = 100.0;

@@ -9,11 +9,14 @@ use super::measure;
 use super::model::Model;
 use super::options::Options;
 use super::placement::{Place, Placement};
-use super::start::Start;
+use super::rows::derivatives;
+use super::start::{Start, refine};
+use crate::basis::hermite;
 use crate::basis::quadrature;
 use crate::solve::{
     self, Control, InOrder, Observer, Outcome, Problem, Record, Settings, Status, WorkspaceTooSmall,
 };
+use nalgebra::SVector;
 
 /// How a curve came out. All figures in the caller's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -137,35 +140,44 @@ where
         return Err(CurveError::WorkspaceTooSmall { needed, given });
     }
     let (state, work) = workspace.split_at_mut(state_len);
-
-    model.natural_cost = Start { model: &model, place }.fill(state)?;
-    model.start_length = model.rough_length(state);
-    let scale = functional_scale(options, place.unit);
-    let mut passes = Passes { observer, records, scale, iterations: 0, linearisations: 0 };
     let wrong =
         |short: WorkspaceTooSmall| CurveError::WorkspaceTooSmall { needed: state_len + short.needed, given };
+    let scale = functional_scale(options, place.unit);
+    let mut passes = Passes {
+        observer,
+        records,
+        scale,
+        most: options.max_iterations as usize,
+        iterations: 0,
+        linearisations: 0,
+    };
 
-    // First the shape, with a parametrisation that is kept even: only the shape decides how far a step goes then, and
-    // what is left to the second pass lies in the right one of many shallow valleys.
-    let mut start_cost: f64 = (0..count).map(|element| model.cost(element, state)).sum();
-    if !start_cost.is_finite() {
-        model.guarded = false;
-        start_cost = (0..count).map(|element| model.cost(element, state)).sum();
-    }
-    model.gauge =
-        model.natural_cost.min(if start_cost > 0.0 { start_cost } else { f64::INFINITY }) / count as f64;
-    let settings = Settings { max_iterations: options.max_iterations as usize, ..Settings::DEFAULT };
-    let shaping = Settings { relative_decrease: SHAPING_DECREASE, ..settings };
-    let mut outcome = passes.minimise(&model, &shaping, state, work).map_err(wrong)?;
-    model.gauge = 0.0;
-    if !matches!(outcome.status, Status::Cancelled | Status::Unbounded) {
-        let finishing = Settings {
-            max_iterations: settings.max_iterations - passes.iterations.min(settings.max_iterations),
-            relative_decrease: options.relative_decrease,
-            relaxation: RELAXATION,
-            ..settings
-        };
-        outcome = passes.minimise(&model, &finishing, state, work).map_err(wrong)?;
+    // One element a span first: its solution, cut into parts, is within some millionths of what more elements reach.
+    let mut coarse = Model { per_span: 1, ..model };
+    let coarse_state = &mut state[..coarse.state_len()];
+    coarse.natural_cost = Start { model: &coarse, place }.fill(coarse_state)?;
+    coarse.start_length = coarse.rough_length(coarse_state);
+    let last = model.per_span == 1;
+    let tolerance =
+        if last { options.relative_decrease } else { COARSE_DECREASE.max(options.relative_decrease) };
+    let mut outcome = passes.shape_and_finish(&mut coarse, tolerance, coarse_state, work).map_err(wrong)?;
+    model.start_length = coarse.start_length;
+    model.natural_cost = coarse.natural_cost;
+    if !last {
+        let found = matches!(outcome.status, Status::Converged | Status::Cancelled)
+            && is_regular((0..coarse.element_count()).map(|element| coarse.rows(element, coarse_state)));
+        if found {
+            let kept = &mut work[..coarse_state.len()];
+            kept.copy_from_slice(coarse_state);
+            model.natural_cost = refine(&coarse, kept, &model, state);
+            if outcome.status != Status::Cancelled {
+                outcome = passes.finish(&model, options.relative_decrease, state, work).map_err(wrong)?;
+            }
+        } else {
+            model.natural_cost = Start { model: &model, place }.fill(state)?;
+            outcome =
+                passes.shape_and_finish(&mut model, options.relative_decrease, state, work).map_err(wrong)?;
+        }
     }
     outcome.iterations = passes.iterations;
     outcome.linearisations = passes.linearisations;
@@ -173,7 +185,43 @@ where
     for (index, element) in elements.iter_mut().enumerate() {
         *element = world_element(&model, place, index, state);
     }
-    Ok(report(&model, place, &outcome, elements, options))
+    let mut report = report(&model, place, &outcome, elements, options);
+    if report.status == Status::Converged {
+        let regular = is_regular((0..count).map(|element| model.rows(element, state)));
+        let natural = model.natural_cost * scale;
+        let trusted =
+            (report.fine_value - report.value).abs() <= TRUSTED * (report.value + NOTHING * natural);
+        if !(regular && trusted) {
+            // What was minimised is not what the elements are: no minimum was found.
+            let grown = model.rough_length(state) > SUSPECT_GROWTH * model.start_length;
+            report.status = if grown { Status::Unbounded } else { Status::Stalled };
+        }
+    }
+    Ok(report)
+}
+
+/// Whether no element has a cusp or stops: its direction changes by less than a right angle, and its speed by less than
+/// a factor of a hundred, between 65 places.
+fn is_regular<const D: usize>(elements: impl Iterator<Item = [SVector<f64, D>; 6]>) -> bool {
+    for rows in elements {
+        let mut before: Option<SVector<f64, D>> = None;
+        for k in 0..=64 {
+            let [first, _, _] = derivatives(&rows, &hermite::basis(f64::from(k) / 64.0));
+            let square = first.dot(&first);
+            if !(square > 0.0) {
+                return false;
+            }
+            if let Some(last) = before {
+                let last_square = last.dot(&last);
+                let (least, most) = (square.min(last_square), square.max(last_square));
+                if !(last.dot(&first) > 0.0) || least < 1e-4 * most {
+                    return false;
+                }
+            }
+            before = Some(first);
+        }
+    }
+    true
 }
 
 /// What a functional's value in the local system is multiplied by to be in the caller's.
@@ -186,17 +234,84 @@ const SHAPING_DECREASE: f64 = 1e-1;
 /// Steps of each element by itself between two of the whole curve.
 const RELAXATION: usize = 10;
 
+/// With one element a span on the way to more, a functional to this fraction is enough.
+const COARSE_DECREASE: f64 = 1e-7;
+/// How far a finer quadrature may be off, as a fraction of the functional.
+const TRUSTED: f64 = 1e-4;
+/// A functional below this part of what is natural for the size is nothing.
+const NOTHING: f64 = 1e-9;
+/// A curve that is wrong, and grew by more than this from its start, was on its way to infinity.
+const SUSPECT_GROWTH: f64 = 10.0;
+
 /// Runs one minimisation after the other as one to the caller: iterations numbered through, values in the caller's
 /// units.
 struct Passes<'a> {
     observer: &'a mut dyn Observer,
     records: &'a mut [Record],
     scale: f64,
+    /// The most iterations of all together.
+    most: usize,
     iterations: usize,
     linearisations: usize,
 }
 
 impl Passes<'_> {
+    /// Two passes. First the shape, with a parametrisation that is kept even: only the shape decides how far a step goes
+    /// then, and what is left to the second pass lies in the right one of many shallow valleys.
+    fn shape_and_finish<const D: usize>(
+        &mut self,
+        model: &mut Model<'_, D>,
+        relative_decrease: f64,
+        state: &mut [f64],
+        work: &mut [f64],
+    ) -> Result<Outcome, WorkspaceTooSmall>
+    where
+        Dimension<D>: Exterior<D>,
+    {
+        let count = model.element_count();
+        let total = |model: &Model<'_, D>, state: &[f64]| -> f64 {
+            (0..count).map(|element| model.cost(element, state)).sum()
+        };
+        let mut start_cost = total(model, state);
+        if !start_cost.is_finite() {
+            model.guarded = false;
+            start_cost = total(model, state);
+        }
+        let natural = if start_cost > 0.0 { model.natural_cost.min(start_cost) } else { model.natural_cost };
+        model.gauge = natural / count as f64;
+        let shaping = Settings {
+            max_iterations: self.most - self.iterations.min(self.most),
+            relative_decrease: SHAPING_DECREASE,
+            ..Settings::DEFAULT
+        };
+        let outcome = self.minimise(model, &shaping, state, work)?;
+        model.gauge = 0.0;
+        if matches!(outcome.status, Status::Cancelled | Status::Unbounded) {
+            return Ok(outcome);
+        }
+        self.finish(model, relative_decrease, state, work)
+    }
+
+    /// The second pass.
+    fn finish<const D: usize>(
+        &mut self,
+        model: &Model<'_, D>,
+        relative_decrease: f64,
+        state: &mut [f64],
+        work: &mut [f64],
+    ) -> Result<Outcome, WorkspaceTooSmall>
+    where
+        Dimension<D>: Exterior<D>,
+    {
+        let finishing = Settings {
+            max_iterations: self.most - self.iterations.min(self.most),
+            relative_decrease,
+            relaxation: RELAXATION,
+            ..Settings::DEFAULT
+        };
+        self.minimise(model, &finishing, state, work)
+    }
+
     fn minimise<const D: usize>(
         &mut self,
         model: &Model<'_, D>,

@@ -23,6 +23,8 @@ const STRETCH_BY_TURN: f64 = 0.0377;
 const SPEED_FACTORS: [f64; 5] = [1.0, 0.6, 1.6, 0.36, 2.5];
 /// A start tangent that leans from a given curvature by less than this (radians) does not tell on which side the curve goes.
 const UNDECIDED: f64 = 1e-6;
+/// The cosine of an angle that counts as none is within this of 1; its square, of a sine that counts as none, below it.
+const STRAIGHT: f64 = 1e-6;
 /// Turnings are not trusted beyond this.
 const MOST_TURN: f64 = 4.0;
 
@@ -125,6 +127,19 @@ where
         Some([step(0)?, step(1)?])
     }
 
+    /// The tangent and the curvature vector of the circle through a joint and its neighbours. Where both neighbours lie in
+    /// the same direction there is none: then half a circle across, for the curve must turn back somehow.
+    fn circle(&self, joint: usize, state: &[f64]) -> Option<[SVector<f64, D>; 2]> {
+        let [a, b] = self.inverted(joint, state)?;
+        let (a_unit, b_unit) = (unit(&a)?, unit(&b)?);
+        if a_unit.dot(&b_unit) > 1.0 - STRAIGHT {
+            let farther = a.dot(&a).min(b.dot(&b));
+            return Some([perpendicular(&a_unit), a_unit * (2.0 * libm::sqrt(farther))]);
+        }
+        let along = unit(&(b - a))?;
+        Some([along, (a - along * a.dot(&along)) * 2.0])
+    }
+
     fn rule(&self, joint: usize, side: usize) -> Rule {
         let data = &self.joints()[joint];
         if data.tangent[side].given != Given::FREE {
@@ -190,9 +205,7 @@ where
         let here = self.point(joint, state);
         let found = match self.rule(joint, side) {
             Rule::Given => return self.place.local_direction(&data.tangent[side].value),
-            Rule::Circle => self.inverted(joint, state).map(|[a, b]| {
-                unit(&(b - a)).unwrap_or_else(|| perpendicular(&unit(&a).unwrap_or_else(SVector::zeros)))
-            }),
+            Rule::Circle => self.circle(joint, state).map(|[tangent, _]| tangent),
             Rule::Mirror => self.neighbour(joint, side).map(|other| {
                 let step = self.point(other, state) - here;
                 let chord = unit(&if side == 1 { step } else { -step }).unwrap_or_else(SVector::zeros);
@@ -234,24 +247,29 @@ where
             return unit(&(vector - tangent * vector.dot(tangent))).map_or(vector, |across| across * size);
         }
         if data.continuity == Continuity::G2
-            && let Some([a, b]) = self.inverted(joint, state)
-            && let Some(along) = unit(&(b - a))
+            && let Some([along, curvature]) = self.circle(joint, state)
         {
-            return carry(&((a - along * a.dot(&along)) * 2.0), &along, tangent);
+            return carry(&curvature, &along, tangent);
         }
         let side = if self.neighbour(joint, side).is_some() { side } else { 1 - side };
         let Some(other) = self.neighbour(joint, side) else { return SVector::zeros() };
         if self.joints()[joint].continuity == Continuity::G2
             && self.joints()[other].continuity == Continuity::G2
-            && let Some([a, b]) = self.inverted(other, state)
-            && let Some(along) = unit(&(b - a))
+            && let Some([along, curvature]) = self.circle(other, state)
         {
             // The thesis's end rule: the neighbour's curvature.
-            return carry(&((a - along * a.dot(&along)) * 2.0), &along, tangent);
+            return carry(&curvature, &along, tangent);
         }
-        // The circle that touches the tangent here and passes through the other joint.
+        // The circle that touches the tangent here and passes through the other joint; a tangent that looks straight away
+        // from it must turn round, to the left as well as to any side.
         let chord = self.point(other, state) - self.point(joint, state);
-        (chord - tangent * chord.dot(tangent)) * (2.0 / chord.dot(&chord))
+        let forward = if side == 1 { *tangent } else { -tangent };
+        let square = chord.dot(&chord);
+        let across = chord - tangent * chord.dot(tangent);
+        if chord.dot(&forward) < 0.0 && across.dot(&across) < STRAIGHT * square {
+            return perpendicular(tangent) * (2.0 / libm::sqrt(square));
+        }
+        across * (2.0 / square)
     }
 
     fn end(&self, joint: usize, side: usize, state: &[f64]) -> End<D> {
@@ -267,11 +285,11 @@ where
         End { point: self.point(joint, state), frame, curvature: components, speed: 1.0, stretch: 0.0 }
     }
 
-    /// Speeds and stretches of a span from the turning of its tangents against the chord. Returns the span's rows.
+    /// Speeds and stretches of a span from the turning of its tangents against the chord.
     ///
     /// Where the tangents look away from the chord, a quintic with these speeds may have a cusp or a loop: other speeds
     /// are tried too, and the fairest curve is taken.
-    fn set_speeds(&self, ends: &mut [End<D>; 2]) -> [SVector<f64, D>; 6] {
+    fn set_speeds(&self, ends: &mut [End<D>; 2]) {
         let chord = ends[1].point - ends[0].point;
         let size = libm::sqrt(chord.dot(&chord));
         let angle = |t: &SVector<f64, D>| {
@@ -293,7 +311,6 @@ where
             }
         }
         give_speeds(ends, speed * best.1, stretch);
-        rows_between(ends)
     }
 
     /// The first joint at which a curvature is given but the start tangent runs along it: then nothing tells to which side
@@ -312,7 +329,7 @@ where
         })
     }
 
-    /// Fills the state, and returns the sum of `1/length^power` over the elements: the natural cost.
+    /// Fills the state, and returns the natural cost.
     ///
     /// # Errors
     /// [`CurveError::CurvatureNeedsTangent`].
@@ -322,37 +339,65 @@ where
         if let Some(joint) = self.undecided(state) {
             return Err(CurveError::CurvatureNeedsTangent { joint });
         }
-        let model = self.model;
-        let (spans, per_span, count) = (model.curve.spans(), model.per_span, self.joints().len());
+        let (spans, count) = (self.model.curve.spans(), self.joints().len());
         let mut natural = 0.0;
         for span in 0..spans {
             let mut ends = [self.end(span, 1, state), self.end((span + 1) % count, 0, state)];
-            let rows = self.set_speeds(&mut ends);
-            let parts = per_span as f64;
-            for end in &mut ends {
-                end.speed /= parts;
-                end.stretch /= parts * parts;
-            }
-            let mut before = ends[0];
-            for part in 0..per_span {
-                let element = span * per_span + part;
-                let after = if part + 1 == per_span {
-                    ends[1]
-                } else {
-                    cut(&rows, (part + 1) as f64 / parts, parts, &before)
-                };
-                model.set_end(element, 0, &before, state);
-                model.set_end(element, 1, &after, state);
-                let length = 0.5 * (before.speed + after.speed);
-                natural += match model.functional.scale_power() {
-                    1 => 1.0 / length,
-                    _ => 1.0 / (length * length * length),
-                };
-                before = after;
-            }
+            self.set_speeds(&mut ends);
+            natural += subdivide(self.model, span, &ends, state);
         }
         Ok(natural)
     }
+}
+
+/// Fills the state of a model from that of the same curve with one element a span, whose elements are cut into equal
+/// parts of their parameter. Returns the natural cost.
+pub(super) fn refine<const D: usize>(
+    coarse: &Model<'_, D>,
+    coarse_state: &[f64],
+    fine: &Model<'_, D>,
+    state: &mut [f64],
+) -> f64
+where
+    Dimension<D>: Exterior<D>,
+{
+    state.fill(0.0);
+    let mut natural = 0.0;
+    for span in 0..fine.curve.spans() {
+        let ends = [coarse.end(span, 0, coarse_state), coarse.end(span, 1, coarse_state)];
+        natural += subdivide(fine, span, &ends, state);
+    }
+    natural
+}
+
+/// Writes the elements of a span, equal parts of the quintic between two ends. Returns their natural cost, the sum of
+/// `1/length^power`.
+fn subdivide<const D: usize>(model: &Model<'_, D>, span: usize, ends: &[End<D>; 2], state: &mut [f64]) -> f64
+where
+    Dimension<D>: Exterior<D>,
+{
+    let rows = rows_between(ends);
+    let parts = model.per_span as f64;
+    let [mut before, last] =
+        ends.map(|end| End { speed: end.speed / parts, stretch: end.stretch / (parts * parts), ..end });
+    let mut natural = 0.0;
+    for part in 0..model.per_span {
+        let element = span * model.per_span + part;
+        let after = if part + 1 == model.per_span {
+            last
+        } else {
+            cut(&rows, (part + 1) as f64 / parts, parts, &before)
+        };
+        model.set_end(element, 0, &before, state);
+        model.set_end(element, 1, &after, state);
+        let length = 0.5 * (before.speed + after.speed);
+        natural += match model.functional.scale_power() {
+            1 => 1.0 / length,
+            _ => 1.0 / (length * length * length),
+        };
+        before = after;
+    }
+    natural
 }
 
 /// The end that a span's start curve has at an interior parameter, for elements that are `1/parts` of it.

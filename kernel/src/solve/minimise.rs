@@ -81,6 +81,8 @@ const WINDOW: usize = 20;
 const WINDOW_DECREASE: f64 = 1e3;
 /// Costs below this part of what is natural for the problem's size count as zero.
 const ZERO_COST: f64 = 1e-3;
+/// A cost below this part of what is natural is rounding: no step can be judged any more.
+pub(super) const NO_COST: f64 = 1e-20;
 
 /// How often other starts of the elements' own unknowns may lead to a better minimum.
 const MOST_EXPLORATIONS: usize = 3;
@@ -255,7 +257,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                 return outcome;
             }
             if radius.0 < least_radius {
-                outcome.status = Status::Stalled;
+                outcome.status = if value <= NO_COST * natural { Status::Converged } else { Status::Stalled };
                 return outcome;
             }
         }

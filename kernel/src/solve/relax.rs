@@ -6,6 +6,7 @@
 //! over them (variable projection), which is far nearer to a quadratic.
 
 use super::envelope::Envelope;
+use super::minimise::NO_COST;
 use super::problem::{BlockList, Problem, packed, packed_len};
 use super::trust_region::{self, Radius, Vectors};
 use super::workspace::{Indices, Workspace};
@@ -48,7 +49,8 @@ pub(super) fn explore<P: Problem + ?Sized>(
         linearisations += relax(problem, work, steps, 0.0);
         for element in 0..problem.elements() {
             // Elements share none of what was changed: each is chosen by itself.
-            if problem.cost(element, work.trial) < (1.0 - BETTER) * problem.cost(element, work.best) {
+            let least_gain = BETTER * problem.cost(element, work.best) + NO_COST * problem.natural_cost();
+            if problem.cost(element, work.trial) < problem.cost(element, work.best) - least_gain {
                 let mut list = BlockList::new();
                 problem.element_blocks(element, &mut list);
                 for &block in list.iter().filter(|&&block| is_private(&work.starts, block)) {

@@ -28,7 +28,7 @@ impl Status {
             Self::Unsolved => "nothing was computed",
             Self::Converged => "converged: the functional cannot be lowered beyond rounding",
             Self::Stalled => {
-                "stalled: no further progress is possible in this precision; the gradient says how near the minimum is"
+                "stalled: no further progress is possible, or the elements are too coarse for the curve; take more elements a span"
             }
             Self::IterationLimit => {
                 "stopped at the iteration limit: allow more iterations, or give better start values"

@@ -106,6 +106,9 @@ impl fmt::Display for PathError {
 
 impl core::error::Error for PathError {}
 
+/// The end of a chain is tried at once where it is within so many of the last move's parameters.
+const NEAR_STOP: f64 = 8.0;
+
 /// What a path is asked to be, which decides what its curve must be.
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
@@ -253,10 +256,13 @@ impl<'a> Chain<'a> {
         step: f64,
         mut attempt: impl FnMut(Position) -> Option<T>,
     ) -> Option<(Position, T)> {
-        if let Some(made) = attempt(stop) {
+        let whole = self.parameters_between(from, stop);
+        // Far from the end, trying it would cost a walk over the whole chain for every move.
+        let mut tried_stop = whole <= NEAR_STOP * step.max(1.0);
+        if tried_stop && let Some(made) = attempt(stop) {
             return Some((stop, made));
         }
-        let mut bad = self.parameters_between(from, stop);
+        let mut bad = whole;
         let mut good = 0.0;
         let mut best = None;
         let mut trial = step.min(0.5 * bad);
@@ -267,6 +273,12 @@ impl<'a> Chain<'a> {
                 good = trial;
                 trial *= 2.0;
                 if trial >= bad {
+                    if !tried_stop && bad == whole {
+                        tried_stop = true;
+                        if let Some(made) = attempt(stop) {
+                            return Some((stop, made));
+                        }
+                    }
                     break;
                 }
             } else {
