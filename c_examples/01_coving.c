@@ -15,6 +15,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "minvar.h"
 
@@ -131,9 +132,17 @@ static void write_path(const char *name, const coving *c) {
 }
 
 int main(int argc, char **argv) {
-    const double wanted = argc > 2 ? strtod(argv[2], NULL) : 0.25;
-    if (!(wanted >= 0.0 && wanted <= 3.0)) {
-        fprintf(stderr, "01_coving: the clearance must be from 0 to 3 inches\n");
+    const char *output = argc > 1 ? argv[1] : "coving.ngc";
+    char *end = NULL;
+    const double wanted = argc > 2 ? strtod(argv[2], &end) : 0.25;
+    if ((argc > 2 && (end == argv[2] || *end != '\0')) || !(wanted >= 0.0 && wanted <= 3.0)) {
+        fprintf(stderr, "01_coving: the clearance must be a number from 0 to 3 inches\n");
+        return 2;
+    }
+    /* The file is put in place by renaming, which would replace a device: only names of NC programs are taken. */
+    const char *ending = strrchr(output, '.');
+    if (ending == NULL || strcmp(ending, ".ngc") != 0) {
+        fprintf(stderr, "01_coving: the output %s must end in .ngc\n", output);
         return 2;
     }
 
@@ -174,6 +183,6 @@ int main(int argc, char **argv) {
            chosen.figures.least_curvature.signed_curvature, chosen.figures.largest_curvature.signed_curvature,
            chosen.figures.box_low[0], chosen.figures.box_high[0], chosen.figures.box_low[1],
            chosen.figures.box_high[1]);
-    write_path(argc > 1 ? argv[1] : "coving.ngc", &chosen);
+    write_path(output, &chosen);
     return 0;
 }

@@ -94,7 +94,9 @@ fn curve(arguments: &CurveArguments) -> Result<Status, Failure> {
         complain(&format!("warning: {}", solution.status.sentence()));
     }
     let off = (solution.fine_value - solution.value).abs();
-    if off > TRUSTED * solution.value.abs() + f64::MIN_POSITIVE {
+    let power = if solution.functional == solve::Functional::Mec { 1 } else { 3 };
+    let nothing = NOTHING / (0..power).map(|_| solution.length).product::<f64>();
+    if off > TRUSTED * solution.value.abs() + nothing {
         complain(&format!(
             "warning: a finer quadrature gives {} for the functional: the curve is too wild for its elements, try more \
              of them (--elements-per-span)",
@@ -106,6 +108,8 @@ fn curve(arguments: &CurveArguments) -> Result<Status, Failure> {
 
 /// The functional is trusted if a finer quadrature confirms it to this fraction.
 const TRUSTED: f64 = 1e-4;
+/// A functional below this, in the curve's length, is nothing.
+const NOTHING: f64 = 1e-12;
 
 /// No two outputs in one place, and none in the input's.
 fn check_targets(arguments: &CurveArguments, targets: &[(&'static str, Target)]) -> Result<(), Failure> {

@@ -92,10 +92,15 @@ pub(crate) fn solve(specification: &Specification, options: &Options) -> Result<
     let mut elements = vec![Element::ZERO; curve::elements_len(&curve, &kernel_options)];
     let report = curve::solve(&curve, &kernel_options, &mut workspace, &mut elements, &mut [], &mut Silent)
         .map_err(wrong)?;
-    let [least, largest] = measure::curvature_range(&elements)
-        .map_err(|error| Error { message: format!("the curve cannot be measured: {error}"), joint: None })?;
+    // A curve that stops somewhere has no curvature there: a matter of its status, not of the input.
+    let range = measure::curvature_range(&elements);
+    let [least, largest] = range.map_or([f64::NAN; 2], |range| range.map(|place| place.signed_curvature));
+    let status = match report.status {
+        Status::Converged if range.is_err() => Status::Stalled,
+        status => status,
+    };
     Ok(Solution {
-        status: report.status,
+        status,
         iterations: report.iterations,
         linearisations: report.linearisations,
         functional: options.functional,
@@ -105,8 +110,8 @@ pub(crate) fn solve(specification: &Specification, options: &Options) -> Result<
         variation: report.variation,
         bending: report.bending,
         gradient: report.gradient,
-        curvature_min: least.signed_curvature,
-        curvature_max: largest.signed_curvature,
+        curvature_min: least,
+        curvature_max: largest,
         elements,
     })
 }

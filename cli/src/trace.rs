@@ -1,7 +1,7 @@
 //! What a chain of elements is like along its length: points, curvature, torsion. Pictures and tables are made of this.
 
 use minvar::basis::quadrature;
-use minvar::curve::Element;
+use minvar::curve::{Element, measure};
 
 /// A vector.
 pub(crate) type Vector = [f64; 3];
@@ -74,6 +74,8 @@ pub(crate) struct Sample {
 pub(crate) struct Trace {
     /// The coordinate plane that the curve keeps to.
     pub(crate) plane: Option<Plane>,
+    /// The normal of the plane, also an oblique one, about which curvature is signed.
+    normal: Option<Vector>,
     /// The arc length at each element's start, and at the end of the last.
     pub(crate) starts: Vec<f64>,
     /// The samples: each element's from `t = 0` to `t = 1`, so that a joint shows both its sides.
@@ -83,7 +85,7 @@ pub(crate) struct Trace {
 impl Trace {
     /// Samples every element at `count` equidistant parameters, at least 2, both ends among them.
     pub(crate) fn new(elements: &[Element], count: usize) -> Self {
-        let plane = Plane::of(elements);
+        let (plane, normal) = (Plane::of(elements), measure::plane_normal(elements));
         let steps = count.max(2) - 1;
         let mut starts = Vec::with_capacity(elements.len() + 1);
         let mut samples = Vec::with_capacity(elements.len() * (steps + 1));
@@ -95,7 +97,7 @@ impl Trace {
                 let next = step as f64 / steps as f64;
                 s += arc_length(element, t, next);
                 t = next;
-                samples.push(sample(element, index, t, s, plane));
+                samples.push(sample(element, index, t, s, normal));
             }
         }
         starts.push(s);
@@ -103,16 +105,16 @@ impl Trace {
             if norm(sample.curvature) * s <= STRAIGHT {
                 sample.torsion = None;
             }
-            if plane.is_some() {
+            if normal.is_some() {
                 sample.torsion = Some(0.0);
             }
         }
-        Self { plane, starts, samples }
+        Self { plane, normal, starts, samples }
     }
 
     /// One more sample, without its arc length.
     pub(crate) fn sample_at(&self, element: &Element, t: f64) -> Sample {
-        sample(element, 0, t, 0.0, self.plane)
+        sample(element, 0, t, 0.0, self.normal)
     }
 
     /// The curve's length.
@@ -128,7 +130,7 @@ fn arc_length(element: &Element, from: f64, to: f64) -> f64 {
     rule.iter().flat_map(|rule| rule.iter()).map(|(x, weight)| weight * (to - from) * speed(x)).sum()
 }
 
-fn sample(element: &Element, index: usize, t: f64, s: f64, plane: Option<Plane>) -> Sample {
+fn sample(element: &Element, index: usize, t: f64, s: f64, normal: Option<Vector>) -> Sample {
     let [point, d1, d2, d3] = element.derivatives(t);
     let speed2 = dot(d1, d1);
     let speed = speed2.sqrt();
@@ -149,15 +151,7 @@ fn sample(element: &Element, index: usize, t: f64, s: f64, plane: Option<Plane>)
     let binormal = cross(d1, d2);
     let size = norm(binormal);
     // The direction along which curvature is measured: the plane's normal, or the binormal itself.
-    let normal = match plane {
-        Some(plane) => {
-            let mut normal = [0.0; 3];
-            normal[plane.axes()[2]] = 1.0;
-            Some(normal)
-        }
-        None if size > 0.0 => Some(scale(1.0 / size, binormal)),
-        None => None,
-    };
+    let normal = normal.or((size > 0.0).then(|| scale(1.0 / size, binormal)));
     let along = |normal: Vector| dot(binormal, normal) / (speed2 * speed);
     let derivative = |normal: Vector| {
         let change = dot(cross(d1, d3), normal) / (speed2 * speed);

@@ -107,7 +107,8 @@ fn an_output_that_cannot_be_written_is_said_and_leaves_nothing() {
 
 #[test]
 fn a_clearance_out_of_range_is_refused() {
-    for wrong in ["-1", "nan", "4"] {
+    for wrong in ["-1", "nan", "4", "abc", "0.5x", ""] {
         refused(&["never.ngc", wrong], 2, "clearance");
     }
+    refused(&["/dev/full"], 2, "must end in .ngc");
 }

@@ -258,7 +258,7 @@ impl<'a> Chain<'a> {
     ) -> Option<(Position, T)> {
         let whole = self.parameters_between(from, stop);
         // Far from the end, trying it would cost a walk over the whole chain for every move.
-        let mut tried_stop = whole <= NEAR_STOP * step.max(1.0);
+        let tried_stop = whole <= NEAR_STOP * step.max(1.0);
         if tried_stop && let Some(made) = attempt(stop) {
             return Some((stop, made));
         }
@@ -273,11 +273,11 @@ impl<'a> Chain<'a> {
                 good = trial;
                 trial *= 2.0;
                 if trial >= bad {
-                    if !tried_stop && bad == whole {
-                        tried_stop = true;
-                        if let Some(made) = attempt(stop) {
-                            return Some((stop, made));
-                        }
+                    if !tried_stop
+                        && bad == whole
+                        && let Some(made) = attempt(stop)
+                    {
+                        return Some((stop, made));
                     }
                     break;
                 }

@@ -1,0 +1,117 @@
+//! A status is true: what is called converged is a regular curve whose functional a finer quadrature confirms, and what
+//! has no minimum is not called converged.
+
+use minvar::curve::{Element, Functional, Joint, Options, Quantity, measure};
+use minvar::solve::Status;
+use minvar_tests::appendix::figure;
+use minvar_tests::ceres;
+use minvar_tests::compare::ours;
+use minvar_tests::curves::solve_curve;
+
+/// Seven points of a gentle walk.
+const CASE: [[f64; 2]; 7] = [
+    [0.0, 0.0],
+    [1.1982621158953246, 0.12162385098013261],
+    [2.397445714719558, 0.16236723098342054],
+    [3.5227889661992897, 0.41026638795462328],
+    [4.0254734731843831, 1.2261369154516812],
+    [4.7626838725276253, 2.2376856582321079],
+    [5.0815087681064508, 3.5032106302501909],
+];
+
+fn points(points: &[[f64; 2]]) -> Vec<Joint> {
+    points.iter().map(|&[x, y]| Joint::at([x, y, 0.0])).collect()
+}
+
+/// The least cosine between the directions of a chain at neighbouring places, 200 an element.
+fn sharpest_turn(elements: &[Element]) -> f64 {
+    let mut least = 1.0f64;
+    for (index, _) in elements.iter().enumerate() {
+        let mut before: Option<[f64; 3]> = None;
+        for k in 0..=200 {
+            let tangent =
+                measure::at(elements, index, f64::from(k) / 200.0).expect("a tangent everywhere").tangent;
+            if let Some(before) = before {
+                least = least.min((0..3).map(|d| before[d] * tangent[d]).sum());
+            }
+            before = Some(tangent);
+        }
+    }
+    least
+}
+
+#[test]
+fn data_that_double_back_on_a_line_are_never_converged_to_a_folded_line() {
+    let back = |x| Joint::at([x, 0.0, 0.0]).with_tangent(Quantity::fixed([-1.0, 0.0, 0.0]));
+    let sets = [
+        (vec![back(0.0), back(1.0)], false),
+        (points(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]]), false),
+        (points(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [3.0, 0.0]]), false),
+        (points(&[[0.0, 0.0], [3.0, 0.0], [1.0, 0.0]]), true),
+        (points(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0]]), true),
+    ];
+    for (joints, closed) in sets {
+        for elements_per_span in [1, 2, 3] {
+            let options = Options { elements_per_span, ..Options::DEFAULT };
+            let (report, elements) = solve_curve(&joints, closed, &options).expect("good data");
+            if report.status == Status::Converged {
+                assert!(sharpest_turn(&elements) > 0.9, "a cusp called converged");
+                assert!(report.fine_value <= report.value * 1.001 + 1e-9, "{report:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn antisymmetric_s_curves_converge_up_to_their_limit_and_not_beyond() {
+    let solve = |degrees: f64, elements_per_span| {
+        let angle = degrees.to_radians();
+        let tangent = Quantity::fixed([libm::cos(angle), libm::sin(angle), 0.0]);
+        let joints = [-2.0, 2.0].map(|x| Joint::at([x, 0.0, 0.0]).with_tangent(tangent));
+        solve_curve(&joints, false, &Options { elements_per_span, ..Options::DEFAULT }).expect("good data").0
+    };
+    for degrees in [30.0, 60.0, 90.0] {
+        for elements_per_span in [1, 2, 4] {
+            assert_eq!(solve(degrees, elements_per_span).status, Status::Converged, "{degrees}");
+        }
+    }
+    let steep = solve(110.0, 8);
+    assert_eq!(steep.status, Status::Converged);
+    assert!(
+        (steep.variation / 1.5961 - 1.0).abs() < 1e-4 && (steep.length / 6.833 - 1.0).abs() < 1e-3,
+        "{steep:?}"
+    );
+    for degrees in [120.0, 150.0, 170.0, 180.0] {
+        for elements_per_span in [1, 2, 4] {
+            let status = solve(degrees, elements_per_span).status;
+            assert!(status != Status::Converged, "{degrees}° with {elements_per_span}: {status:?}");
+        }
+    }
+}
+
+#[test]
+fn many_elements_reach_the_true_curve_too() {
+    for (id, elements_per_span, truth) in [
+        ("4.11", 16, 1.15372084),
+        ("4.11", 64, 1.15372084),
+        ("4.22", 64, 0.0083516963),
+        ("4.16", 64, 4.4864395),
+    ] {
+        let (report, _) = ours(&figure(id), ceres::Functional::Mvc, elements_per_span);
+        assert_eq!(report.status, Status::Converged, "{id} with {elements_per_span}");
+        assert!((report.variation / truth - 1.0).abs() < 1e-8, "{id}: {}", report.variation);
+    }
+}
+
+#[test]
+fn an_energy_does_not_hide_in_an_element_that_nearly_stops() {
+    // A walk for which one element once stopped at a joint and kept a curvature of 44 there out of sight.
+    let joints = points(&CASE);
+    for elements_per_span in [1, 2] {
+        let options = Options { functional: Functional::MEC, elements_per_span, ..Options::DEFAULT };
+        let (report, elements) = solve_curve(&joints, false, &options).expect("good data");
+        assert_eq!(report.status, Status::Converged);
+        let [least, largest] = measure::curvature_range(&elements).expect("a regular curve");
+        assert!(least.signed_curvature > -0.6 && largest.signed_curvature < 1.3, "{largest:?}");
+    }
+}
