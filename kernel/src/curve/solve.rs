@@ -398,3 +398,67 @@ where
         decrement: outcome.decrement * scale,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::curve::joint::{Joint, Quantity};
+
+    fn row(x: f64, y: f64) -> SVector<f64, 2> {
+        SVector::from([x, y])
+    }
+
+    /// From the origin to (1, 0) with these speeds and no bend at the ends.
+    fn straight(first: f64, last: f64) -> [SVector<f64, 2>; 6] {
+        [row(0.0, 0.0), row(first, 0.0), row(0.0, 0.0), row(0.0, 0.0), row(last, 0.0), row(1.0, 0.0)]
+    }
+
+    #[test]
+    fn folds_and_stops_are_irregular() {
+        assert!(is_regular([straight(1.0, 1.0), straight(0.5, 1.2)].into_iter()));
+        assert!(!is_regular([straight(1.0, 1.0), straight(-1.0, -1.0)].into_iter()), "a fold");
+        assert!(!is_regular([straight(0.0, 1.0)].into_iter()), "a start without speed");
+        assert!(!is_regular([straight(f64::NAN, 1.0)].into_iter()), "no number");
+        let mut sharp = straight(1.0, 1.0);
+        sharp[4] = row(1e-6, 0.0);
+        sharp[3] = row(0.0, 1.0);
+        assert!(!is_regular([sharp].into_iter()), "an end that nearly stops");
+    }
+
+    #[test]
+    fn refining_keeps_the_curve() {
+        let joints = [
+            Joint::at([0.0, 0.0, 0.0]).with_tangent(Quantity::fixed([0.3, 1.0, 0.0])),
+            Joint::at([1.0, 0.4, 0.0]),
+            Joint::at([1.5, -0.4, 0.0]),
+        ];
+        let curve = Curve { joints: &joints, closed: false };
+        let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
+        let fine = model::<2>(&curve, &Options { elements_per_span: 3, ..Options::DEFAULT });
+        let coarse = Model { per_span: 1, ..fine };
+        let (mut coarse_state, mut state) = ([0.0; 100], [0.0; 300]);
+        assert!(
+            Start { model: &coarse, place: &place }.fill(&mut coarse_state[..coarse.state_len()]).is_ok()
+        );
+        refine(&coarse, &coarse_state, &fine, &mut state[..fine.state_len()]);
+        let at = |rows: &[SVector<f64, 2>; 6], t: f64, order: usize| {
+            let basis = hermite::basis(t);
+            (0..6).fold(row(0.0, 0.0), |sum, a| sum + rows[a] * basis[order][a])
+        };
+        for span in 0..2 {
+            let whole = coarse.rows(span, &coarse_state);
+            for part in 0..3 {
+                let piece = fine.rows(3 * span + part, &state);
+                for k in 0..=4 {
+                    let t = f64::from(k) / 4.0;
+                    let there = (part as f64 + t) / 3.0;
+                    let scales = [1.0, 1.0 / 3.0, 1.0 / 9.0];
+                    for (order, scale) in scales.into_iter().enumerate() {
+                        let off = at(&piece, t, order) - at(&whole, there, order) * scale;
+                        assert!(off.amax() < 1e-13, "span {span} part {part} order {order}: {off}");
+                    }
+                }
+            }
+        }
+    }
+}
