@@ -52,12 +52,16 @@ pub(crate) struct CurveArguments {
     pub(crate) file: PathBuf,
 
     /// What the curve minimises
-    #[arg(long, value_enum, default_value_t = Functional::Mvc, value_name = "NAME")]
+    #[arg(long, value_enum, ignore_case = true, default_value_t = Functional::Mvc, value_name = "NAME")]
     pub(crate) functional: Functional,
 
     /// Quintic elements between two joints: more come nearer to the true minimum
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub(crate) elements_per_span: u32,
+
+    /// 2 for a planar curve, 3 for one that may leave the plane of its data [default: planar data give a planar curve]
+    #[arg(long, value_name = "2|3", value_parser = clap::value_parser!(u32).range(2..=3))]
+    pub(crate) dimension: Option<u32>,
 
     /// Stop after so many iterations
     #[arg(long, default_value_t = 500, value_name = "N")]
@@ -144,11 +148,11 @@ pub(crate) struct PathArguments {
     pub(crate) tolerance: f64,
 
     /// The cutting feed, length a minute [default: 600 mm or 24 inches]
-    #[arg(long, value_name = "FEED", requires = "nc")]
+    #[arg(long, value_name = "FEED", requires = "nc", allow_negative_numbers = true)]
     pub(crate) feed: Option<f64>,
 
     /// The feed while plunging; without it the cutting feed
-    #[arg(long, value_name = "FEED", requires = "nc")]
+    #[arg(long, value_name = "FEED", requires = "nc", allow_negative_numbers = true)]
     pub(crate) plunge_feed: Option<f64>,
 
     /// The height of rapid moves: above the cut and everything else [default: 5 mm or 0.2 inches above the cut]

@@ -69,6 +69,7 @@ fn curve(arguments: &CurveArguments) -> Result<Status, Failure> {
         functional: arguments.functional,
         elements_per_span: arguments.elements_per_span,
         max_iterations: arguments.max_iterations,
+        dimension: arguments.dimension.unwrap_or(0),
     };
     let solution = solve::solve(&specification, &options).map_err(|error| {
         Failure::Input(match error.joint.and_then(|joint| specification.joints.get(joint)) {
@@ -123,15 +124,24 @@ fn check_targets(arguments: &CurveArguments, targets: &[(&'static str, Target)])
     }
 }
 
+/// More than a million joints; what is larger is a device or a mistake.
+const LARGEST_INPUT: u64 = 256 << 20;
+
 fn read(arguments: &CurveArguments) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     let (name, result) = if arguments.reads_stdin() {
-        ("the standard input".into(), io::stdin().lock().read_to_end(&mut bytes))
+        ("the standard input".into(), io::stdin().lock().take(LARGEST_INPUT + 1).read_to_end(&mut bytes))
     } else {
         let file = &arguments.file;
-        (file.to_string_lossy(), std::fs::File::open(file).and_then(|mut file| file.read_to_end(&mut bytes)))
+        (
+            file.to_string_lossy(),
+            std::fs::File::open(file).and_then(|file| file.take(LARGEST_INPUT + 1).read_to_end(&mut bytes)),
+        )
     };
     match result {
+        Ok(_) if bytes.len() as u64 > LARGEST_INPUT => {
+            Err(Failure::Input(format!("error: {name} is larger than 256 MiB: that is no constraint file")))
+        }
         Ok(_) => Ok(bytes),
         Err(error) => Err(Failure::Input(format!("error: cannot read {name}: {}", output::reason(&error)))),
     }

@@ -32,6 +32,8 @@ pub(crate) struct Options {
     pub(crate) elements_per_span: u32,
     /// The largest number of iterations.
     pub(crate) max_iterations: u32,
+    /// 2, 3, or 0 to find out.
+    pub(crate) dimension: u32,
 }
 
 /// A curve and its figures.
@@ -85,6 +87,7 @@ pub(crate) fn solve(specification: &Specification, options: &Options) -> Result<
         },
         elements_per_span: options.elements_per_span,
         max_iterations: options.max_iterations,
+        dimension: options.dimension,
         ..curve::Options::DEFAULT
     };
     let wrong = |error: CurveError| Error::of(error, specification);

@@ -135,7 +135,8 @@ mod tests {
     fn json_has_the_promised_fields_first_and_every_digit() {
         let text = "(G2Joint a (0,0,0)) (G2Joint \"b\" (1,0,0)) (G2Curve c Open (a,\"b\"))";
         let specification = constraints::read(text.as_bytes()).expect("a curve").specification;
-        let options = Options { functional: Functional::Mvc, elements_per_span: 1, max_iterations: 9 };
+        let options =
+            Options { functional: Functional::Mvc, elements_per_span: 1, max_iterations: 9, dimension: 0 };
         let solution = solution(vec![shapes::quarter(1.0 / 3.0)]);
         let text = json(&specification, &options, &solution).expect("JSON");
         let promised = [

@@ -51,6 +51,19 @@ fn a_missing_file_a_folder_and_a_wrong_option_are_exit_code_2() {
         assert!(code == 2 && error.starts_with("error: no NC path: the "), "{option:?}: {code} {error}");
     }
     assert!(names(folder.path()).is_empty(), "nothing is written");
+    let (code, _, error) = run(minvar(folder.path()).arg("/dev/zero"));
+    assert!(code == 2 && error.contains("larger than 256 MiB"), "{code} {error}");
+}
+
+#[test]
+fn a_planar_curve_may_be_asked_for_by_dimension() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let space = "(G2Joint a (0,0,0))(G2Joint b (1,1,0))(G2Joint c (2,0,1))(G2Joint d (3,1,0))(G2Curve c Open (a,b,c,d))";
+    fs::write(folder.path().join("s.mvc"), space).expect("a file");
+    let (code, _, error) = run(minvar(folder.path()).args(["s.mvc", "--dimension", "2"]));
+    assert!(code == 2 && error.contains("do not lie in a plane"), "{code} {error}");
+    assert_eq!(run(minvar(folder.path()).args(["s.mvc", "--dimension", "3"])).0, 0);
+    assert_eq!(run(minvar(folder.path()).args([WICKET, "--dimension", "3", "--functional", "MVC"])).0, 0);
 }
 
 #[test]
