@@ -102,10 +102,11 @@ impl Trace {
         }
         starts.push(s);
         for sample in &mut samples {
-            if norm(sample.curvature) * s <= STRAIGHT {
+            let straight = norm(sample.curvature) * s <= STRAIGHT;
+            if straight {
                 sample.torsion = None;
             }
-            if normal.is_some() {
+            if plane.is_some() || (normal.is_some() && !straight) {
                 sample.torsion = Some(0.0);
             }
         }
