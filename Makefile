@@ -23,7 +23,7 @@ help:
 	@sed -n 's/^# \{0,1\}//p' Makefile | head -11
 
 tools:
-	@command -v $(CARGO) >/dev/null || { echo "minvar needs Rust 1.87 or later: https://rustup.rs" >&2; exit 1; }
+	@command -v $(CARGO) >/dev/null || { echo "minvar needs Rust 1.89 or later: https://rustup.rs" >&2; exit 1; }
 	@scripts/need.sh $(CC) gcc "the C compiler"
 
 lib: tools

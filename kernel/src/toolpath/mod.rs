@@ -235,10 +235,10 @@ impl<'a> Chain<'a> {
     fn next_stop(&self, from: Position) -> Position {
         let joints = self.elements.windows(2).enumerate().skip(from.index);
         for (index, pair) in joints {
-            if let [before, after] = pair {
-                if is_corner(before, after) {
-                    return Position { index: index + 1, t: 0.0 };
-                }
+            if let [before, after] = pair
+                && is_corner(before, after)
+            {
+                return Position { index: index + 1, t: 0.0 };
             }
         }
         self.end()
