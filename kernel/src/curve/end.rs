@@ -46,6 +46,13 @@ impl<const D: usize> End<D> {
     }
 }
 
+/// The six Hermite rows of an element between two ends.
+pub(super) fn rows_between<const D: usize>(ends: &[End<D>; 2]) -> [SVector<f64, D>; 6] {
+    let [p0, v0, a0] = ends[0].rows();
+    let [p1, v1, a1] = ends[1].rows();
+    [p0, v0, a0, a1, v1, p1]
+}
+
 /// The Hermite row (`C(0), C'(0), C''(0), C''(1), C'(1), C(1)`) of the `order`-th derivative at an end.
 #[inline]
 pub(super) const fn row_of(end: usize, order: usize) -> usize {

@@ -15,6 +15,7 @@ pub use place::{at, at_length, closest};
 pub use whole::{bending, bounding_box, curvature_range, length, variation};
 
 use super::element::Element;
+use super::rows;
 use crate::basis::bernstein::Bernstein;
 use crate::basis::hermite;
 use crate::basis::quadrature::FINEST;
@@ -122,15 +123,9 @@ fn normalised(element: &Element) -> ([Vector3<f64>; 6], f64) {
     (rows, if unit > 0.0 { unit } else { 1.0 })
 }
 
+/// `C', C'', C'''` at a parameter.
 fn derivatives(rows: &[Vector3<f64>; 6], t: f64) -> [Vector3<f64>; 3] {
-    let basis = hermite::basis(t);
-    core::array::from_fn(|k| {
-        let mut sum = Vector3::zeros();
-        for a in 0..6 {
-            sum += rows[a] * basis[k + 1][a];
-        }
-        sum
-    })
+    rows::derivatives(rows, &hermite::basis(t))
 }
 
 /// Numbers beyond this overflow when they are multiplied.

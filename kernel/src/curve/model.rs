@@ -5,7 +5,7 @@
 //! *element*'s block holds the scalars of its two ends, and what a G1 or G0 joint does not share. What an end is made
 //! of, and how it moves, [`super::end`] knows; what an element costs, [`super::rows`].
 
-use super::end::{Coordinate, End, SideStep, row_of};
+use super::end::{Coordinate, End, SideStep, row_of, rows_between};
 use super::fairness::{Dimension, Exterior, Functional, density, evenness};
 use super::joint::{Continuity, Curve, Given, Joint};
 use super::rows::{derivatives, row_derivatives};
@@ -213,9 +213,7 @@ impl<const D: usize> Model<'_, D> {
 
     /// The six Hermite rows of an element in the local system.
     pub(super) fn rows(&self, element: usize, state: &[f64]) -> [SVector<f64, D>; 6] {
-        let [p0, v0, a0] = self.end(element, 0, state).rows();
-        let [p1, v1, a1] = self.end(element, 1, state).rows();
-        [p0, v0, a0, a1, v1, p1]
+        rows_between(&[self.end(element, 0, state), self.end(element, 1, state)])
     }
 
     /// Half the sum of the speeds: about the length, and cheap.

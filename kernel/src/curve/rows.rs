@@ -6,19 +6,23 @@ use crate::basis::hermite;
 use crate::basis::quadrature::Rule;
 use nalgebra::{SMatrix, SVector};
 
+/// A combination of an element's six rows: its point or a derivative, by the values of the basis.
+#[inline]
+pub(super) fn combine<const D: usize>(rows: &[SVector<f64, D>; 6], weights: &[f64; 6]) -> SVector<f64, D> {
+    let mut sum = SVector::zeros();
+    for a in 0..6 {
+        sum += rows[a] * weights[a];
+    }
+    sum
+}
+
 /// `C', C'', C'''` of an element at a point of a rule.
 #[inline]
 pub(super) fn derivatives<const D: usize>(
     rows: &[SVector<f64, D>; 6],
     basis: &[[f64; 6]; 4],
 ) -> [SVector<f64, D>; 3] {
-    core::array::from_fn(|k| {
-        let mut sum = SVector::zeros();
-        for a in 0..6 {
-            sum += rows[a] * basis[k + 1][a];
-        }
-        sum
-    })
+    core::array::from_fn(|k| combine(rows, &basis[k + 1]))
 }
 
 /// The functional of an element by its Hermite rows.

@@ -171,7 +171,9 @@ where
             kept.copy_from_slice(coarse_state);
             model.natural_cost = refine(&coarse, kept, &model, state);
             if outcome.status != Status::Cancelled {
-                outcome = passes.finish(&model, options.relative_decrease, state, work).map_err(wrong)?;
+                outcome = passes
+                    .minimise(&model, options.relative_decrease, RELAXATION, state, work)
+                    .map_err(wrong)?;
             }
         } else {
             model.natural_cost = Start { model: &model, place }.fill(state)?;
@@ -233,7 +235,6 @@ fn functional_scale(options: &Options, unit: f64) -> f64 {
 const SHAPING_DECREASE: f64 = 1e-1;
 /// Steps of each element by itself between two of the whole curve.
 const RELAXATION: usize = 10;
-
 /// With one element a span on the way to more, a functional to this fraction is enough.
 const COARSE_DECREASE: f64 = 1e-7;
 /// How far a finer quadrature may be off, as a fraction of the functional.
@@ -279,50 +280,33 @@ impl Passes<'_> {
         }
         let natural = if start_cost > 0.0 { model.natural_cost.min(start_cost) } else { model.natural_cost };
         model.gauge = natural / count as f64;
-        let shaping = Settings {
-            max_iterations: self.most - self.iterations.min(self.most),
-            relative_decrease: SHAPING_DECREASE,
-            ..Settings::DEFAULT
-        };
-        let outcome = self.minimise(model, &shaping, state, work)?;
+        let outcome = self.minimise(model, SHAPING_DECREASE, 0, state, work)?;
         model.gauge = 0.0;
         if matches!(outcome.status, Status::Cancelled | Status::Unbounded) {
             return Ok(outcome);
         }
-        self.finish(model, relative_decrease, state, work)
+        self.minimise(model, relative_decrease, RELAXATION, state, work)
     }
 
-    /// The second pass.
-    fn finish<const D: usize>(
-        &mut self,
-        model: &Model<'_, D>,
-        relative_decrease: f64,
-        state: &mut [f64],
-        work: &mut [f64],
-    ) -> Result<Outcome, WorkspaceTooSmall>
-    where
-        Dimension<D>: Exterior<D>,
-    {
-        let finishing = Settings {
-            max_iterations: self.most - self.iterations.min(self.most),
-            relative_decrease,
-            relaxation: RELAXATION,
-            ..Settings::DEFAULT
-        };
-        self.minimise(model, &finishing, state, work)
-    }
-
+    /// One pass, with what is left of the iterations.
     fn minimise<const D: usize>(
         &mut self,
         model: &Model<'_, D>,
-        settings: &Settings,
+        relative_decrease: f64,
+        relaxation: usize,
         state: &mut [f64],
         work: &mut [f64],
     ) -> Result<Outcome, WorkspaceTooSmall>
     where
         Dimension<D>: Exterior<D>,
     {
-        let outcome = solve::minimise(model, settings, &InOrder, state, work, &mut [], self)?;
+        let settings = Settings {
+            max_iterations: self.most - self.iterations.min(self.most),
+            relative_decrease,
+            relaxation,
+            ..Settings::DEFAULT
+        };
+        let outcome = solve::minimise(model, &settings, &InOrder, state, work, &mut [], self)?;
         self.iterations += outcome.iterations;
         self.linearisations += outcome.linearisations;
         Ok(outcome)

@@ -6,12 +6,13 @@
 //! their neighbour. Speeds and stretches are those of the quintic that fits a circular arc best; the thesis starts
 //! with the chord and 0, from where twice as many iterations are needed.
 
-use super::end::{End, orthonormalise};
+use super::end::{End, orthonormalise, rows_between};
 use super::error::CurveError;
 use super::fairness::{Dimension, Exterior};
 use super::joint::{Continuity, Given, Joint};
 use super::model::Model;
 use super::placement::Placement;
+use super::rows::combine;
 use crate::basis::hermite;
 use nalgebra::SVector;
 
@@ -406,13 +407,7 @@ where
     Dimension<D>: Exterior<D>,
 {
     let basis = hermite::basis(t);
-    let [point, first, second]: [SVector<f64, D>; 3] = core::array::from_fn(|k| {
-        let mut sum = SVector::zeros();
-        for a in 0..6 {
-            sum += rows[a] * basis[k][a];
-        }
-        sum
-    });
+    let [point, first, second] = [0, 1, 2].map(|order: usize| combine(rows, &basis[order]));
     let speed = libm::sqrt(first.dot(&first));
     let tangent = unit(&first).unwrap_or(before.frame[0]);
     let along = second.dot(&tangent);
@@ -423,13 +418,6 @@ where
         components[j - 1] = frame[j].dot(&curvature);
     }
     End { point, frame, curvature: components, speed: speed / parts, stretch: along / (parts * parts) }
-}
-
-/// The six rows of an element between two ends.
-fn rows_between<const D: usize>(ends: &[End<D>; 2]) -> [SVector<f64, D>; 6] {
-    let [p0, v0, a0] = ends[0].rows();
-    let [p1, v1, a1] = ends[1].rows();
-    [p0, v0, a0, a1, v1, p1]
 }
 
 fn give_speeds<const D: usize>(ends: &mut [End<D>; 2], speed: f64, stretch: f64) {

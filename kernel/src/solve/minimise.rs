@@ -137,11 +137,10 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         observer: &mut dyn Observer,
     ) -> Outcome {
         let natural = self.problem.natural_cost();
-        if self.relaxation > 0 {
+        let explores = self.relaxation > 0 && self.problem.variants() > 0;
+        if explores {
             self.linearisations += relax::explore(self.problem, &mut self.work, EXPLORATION, state);
-            if self.problem.variants() > 0 {
-                state.copy_from_slice(self.work.best);
-            }
+            state.copy_from_slice(self.work.best);
         }
         let mut value = self.linearise(state);
         let mut outcome = Outcome {
@@ -160,7 +159,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         let least_radius = 1e-9 * root;
         let mut shift = 0.0;
         let mut polish = POLISH;
-        let mut explorations = if self.relaxation > 0 { MOST_EXPLORATIONS } else { 0 };
+        let mut explorations = if explores { MOST_EXPLORATIONS } else { 0 };
         let mut past = [f64::INFINITY; WINDOW];
         loop {
             let gradient = self.work.gradient.iter().fold(0.0f64, |most, g| most.max(g.abs()));
@@ -266,9 +265,6 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     /// Looks for better minima of the elements' own unknowns beside the present ones; moves there if that lowers the
     /// cost.
     fn hop(&mut self, state: &mut [f64], value: f64) -> bool {
-        if self.problem.variants() == 0 {
-            return false;
-        }
         self.linearisations += relax::explore(self.problem, &mut self.work, EXPLORATION, state);
         let Workspace { trial, best, .. } = &mut self.work;
         trial.copy_from_slice(best);

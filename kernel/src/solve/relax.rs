@@ -15,8 +15,7 @@ use super::workspace::{Indices, Workspace};
 const FIRST_RADIUS: f64 = 0.5;
 
 /// Takes up to `steps` steps in every element of the trial state, until a step promises to lower the cost by less
-/// than `enough`. `work.spare` is scratch.
-/// Returns how often an element was linearised.
+/// than `enough`. `work.spare` is scratch. Returns how often an element was linearised.
 pub(super) fn relax<P: Problem + ?Sized>(
     problem: &P,
     work: &mut Workspace<'_>,
@@ -35,9 +34,6 @@ pub(super) fn explore<P: Problem + ?Sized>(
     steps: usize,
     state: &[f64],
 ) -> usize {
-    if problem.variants() == 0 {
-        return 0;
-    }
     work.trial.copy_from_slice(state);
     let mut linearisations = relax(problem, work, steps, 0.0);
     work.best.copy_from_slice(work.trial);
@@ -49,8 +45,9 @@ pub(super) fn explore<P: Problem + ?Sized>(
         linearisations += relax(problem, work, steps, 0.0);
         for element in 0..problem.elements() {
             // Elements share none of what was changed: each is chosen by itself.
-            let least_gain = BETTER * problem.cost(element, work.best) + NO_COST * problem.natural_cost();
-            if problem.cost(element, work.trial) < problem.cost(element, work.best) - least_gain {
+            let best = problem.cost(element, work.best);
+            let least_gain = BETTER * best + NO_COST * problem.natural_cost();
+            if problem.cost(element, work.trial) < best - least_gain {
                 let mut list = BlockList::new();
                 problem.element_blocks(element, &mut list);
                 for &block in list.iter().filter(|&&block| is_private(&work.starts, block)) {
