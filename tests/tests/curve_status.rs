@@ -115,3 +115,18 @@ fn an_energy_does_not_hide_in_an_element_that_nearly_stops() {
         assert!(least.signed_curvature > -0.6 && largest.signed_curvature < 1.3, "{largest:?}");
     }
 }
+
+#[test]
+fn a_limit_on_the_way_to_many_elements_loses_nothing() {
+    let joints = points(&CASE);
+    let solve = |elements_per_span, max_iterations| {
+        let options = Options { elements_per_span, max_iterations, ..Options::DEFAULT };
+        solve_curve(&joints, false, &options).expect("good data").0
+    };
+    for max_iterations in [1, 2, 3] {
+        let (one, four) = (solve(1, max_iterations), solve(4, max_iterations));
+        assert_eq!(four.status, Status::IterationLimit);
+        assert_eq!(four.iterations, max_iterations as usize);
+        assert!(four.fine_value <= one.fine_value * (1.0 + 1e-6), "{} {}", four.fine_value, one.fine_value);
+    }
+}

@@ -164,13 +164,14 @@ where
     model.start_length = coarse.start_length;
     model.natural_cost = coarse.natural_cost;
     if !last {
-        let found = matches!(outcome.status, Status::Converged | Status::Cancelled)
+        let stopped = matches!(outcome.status, Status::Cancelled | Status::IterationLimit);
+        let found = (stopped || outcome.status == Status::Converged)
             && is_regular((0..coarse.element_count()).map(|element| coarse.rows(element, coarse_state)));
         if found {
             let kept = &mut work[..coarse_state.len()];
             kept.copy_from_slice(coarse_state);
             model.natural_cost = refine(&coarse, kept, &model, state);
-            if outcome.status != Status::Cancelled {
+            if !stopped {
                 outcome = passes
                     .minimise(&model, options.relative_decrease, RELAXATION, state, work)
                     .map_err(wrong)?;
