@@ -51,7 +51,7 @@ static coving design(double curvature, unsigned elements_per_span) {
     joints[1] = minvar_joint_at(DEPTH, -THICKNESS, 0.0);
     joints[1] = minvar_joint_with_tangent(joints[1], MINVAR_FIXED, 1.0, 0.0, 0.0);
 
-    const minvar_curve curve = {joints, 2, 0};
+    const minvar_curve curve = minvar_curve_through(joints, 2, 0);
     minvar_options options = minvar_options_defaults();
     options.elements_per_span = elements_per_span;
 

@@ -33,7 +33,7 @@
 
 
 // The number of this interface. It grows when something changes that compiled programs would notice.
-#define MINVAR_ABI 1
+#define MINVAR_ABI 2
 
 // What was wrong with a call. Nothing was computed and no result was written, unless the code says otherwise. The
 // numbers are fixed for good.
@@ -72,12 +72,20 @@ typedef enum minvar_code {
     // A planar curve was asked for but the data do not lie in a plane.
     MINVAR_NOT_PLANAR = 21,
     // An option has a value that it cannot have; the message names it. `index`: its place among the fields of the
-    // options, from 0.
+    // options, from 0; one more than the last for the reference's weight.
     MINVAR_BAD_OPTION = 22,
     // The workspace is too short. `needed`, `given`, in doubles.
     MINVAR_WORKSPACE_TOO_SMALL = 23,
     // An array for results is too short; the message names it. `needed`, `given`, in its entries.
     MINVAR_RESULT_TOO_SHORT = 24,
+    // The line or plane on which a joint slides has the zero vector as its direction. `index`: the joint.
+    MINVAR_ZERO_GUIDE = 25,
+    // The length that is asked for is no greater than that of the polygon through the fixed joints.
+    MINVAR_LENGTH_TOO_SHORT = 26,
+    // The reference shape has not as many elements as the curve. `needed`, `given`.
+    MINVAR_WRONG_ELEMENT_COUNT = 27,
+    // An element of the reference shape or of the start is not finite or has no direction at an end. `index`: the element.
+    MINVAR_BAD_REFERENCE = 28,
     // There are no elements.
     MINVAR_NO_ELEMENTS = 40,
     // A number of an element is NaN, infinite or (in paths) beyond 1e100. `index`: the element.
@@ -137,6 +145,13 @@ typedef enum minvar_given {
     MINVAR_INITIAL = 1,
     // Kept exactly.
     MINVAR_FIXED = 2,
+    // Of a position: it slides on the line through the value along the joint's guide; the value is where it starts.
+    MINVAR_ON_LINE = 3,
+    // Of a position: it slides in the plane through the value across the joint's guide; the value is where it starts.
+    MINVAR_ON_PLANE = 4,
+    // Of a curvature: its size is kept, its direction is free. The value's direction is where it starts, if it does not
+    // run along the tangent. A planar curve keeps the side to which it bends at the start.
+    MINVAR_SIZE = 5,
 } minvar_given;
 
 // How the two elements at a joint meet.
@@ -155,6 +170,11 @@ typedef enum minvar_functional {
     MINVAR_MVC = 0,
     // The bending energy, integral of kappa^2 ds (thesis 4.1); 1/length.
     MINVAR_MEC = 1,
+    // The scale-invariant MVC, L^3 times the variation of curvature (thesis 4.5): it has a minimum where the MVC grows
+    // without limit.
+    MINVAR_SI_MVC = 2,
+    // The scale-invariant MEC, L times the bending energy.
+    MINVAR_SI_MEC = 3,
 } minvar_functional;
 
 // The unit of all lengths of a program: the curve's, the tolerance's and the feed's.
@@ -219,6 +239,17 @@ typedef struct minvar_options {
     // Converged when another step promises to lower the functional by less than this fraction, or 20 iterations
     // together lowered it by less than a thousand times that; 0 to below 1. Default 1e-12.
     double relative_decrease;
+    // This weight times the length is added to the functional: a tension. In the functional's unit over a length, 0 or
+    // more; 0 with a scale-invariant functional. Default 0.
+    double tension;
+    // This weight times the bending energy is added to the functional. In the functional's unit times a length, 0 or
+    // more; 0 with a scale-invariant functional. Default 0.
+    double bending;
+    // The length of the curve; 0 leaves it free. Default 0.
+    double length;
+    // How far the curve may be from the true minimum, a length: spans are divided further until an estimate is below it,
+    // into at most `elements_per_span` elements each. 0 takes just `elements_per_span`. Default 0.
+    double tolerance;
 } minvar_options;
 
 // A vector and what it is. The value of a free quantity is not read.
@@ -244,6 +275,9 @@ typedef struct minvar_joint {
     struct minvar_quantity tangent[2];
     // Arriving and leaving curvature vector.
     struct minvar_quantity curvature[2];
+    // Where the position slides: the direction of its line, or the normal of its plane; of any length but zero. Not read
+    // otherwise.
+    double guide[3];
 } minvar_joint;
 
 // The designer's data: joints in order along the curve, owned by the caller, only read, and only while a call lasts.
@@ -254,6 +288,16 @@ typedef struct minvar_curve {
     size_t joint_count;
     // Not 0: the curve goes on from the last joint to the first, which is not repeated.
     int32_t closed;
+    // A reference shape (thesis 4.6), or NULL: the curve minimises the integral of (d kappa/ds - w d kappa0/ds)^2 ds
+    // with kappa0 the reference's curvature vector at the same element and parameter. As many elements as the curve has.
+    // The search starts from it. With the weight 1 and its own joints the curve is the reference, and joints that move
+    // deform it; with 0 it is the minimum variation curve. The speed's relative change along an element is held to the
+    // reference's. For MINVAR_MVC, without a tolerance.
+    const struct minvar_element *reference;
+    // How many elements the reference has; 0 without one.
+    size_t reference_count;
+    // The weight w of the reference, 0 to 1.
+    double reference_weight;
 } minvar_curve;
 
 // What one iteration did: one trial step, accepted or not. `value`, `predicted`, `actual` and `gradient` in the
@@ -285,6 +329,8 @@ typedef struct minvar_report {
     enum minvar_status status;
     // 1 if the curve was computed in a plane, 0 in space.
     int32_t planar;
+    // How many elements the curve has: as many as minvar_curve_elements_len() says, or fewer with a tolerance.
+    size_t elements;
     // The number of iterations: trial steps, accepted or not.
     size_t iterations;
     // How often an element was linearised, over all elements: the work that was done.
@@ -302,6 +348,9 @@ typedef struct minvar_report {
     double variation;
     // The bending energy E, integral of kappa^2 ds; 1/length.
     double bending;
+    // The estimated distance from the true minimum, where a tolerance was asked for, else 0; infinite where there is no
+    // estimate.
+    double error;
     // The largest gradient component, each times its unknown's natural size, as a fraction of the functional.
     double gradient;
     // The decrease that another Newton step would promise; infinite where the Hessian is not positive definite.
@@ -466,6 +515,26 @@ struct minvar_options minvar_options_defaults(void);
 // fill in a struct: their arguments are checked by the functions that take the joints.
 struct minvar_joint minvar_joint_at(double x, double y, double z);
 
+// The same joint sliding on the line through the point x, y, z, where it starts, along dx, dy, dz, of any length but
+// zero.
+struct minvar_joint minvar_joint_on_line(struct minvar_joint joint,
+                                         double x,
+                                         double y,
+                                         double z,
+                                         double dx,
+                                         double dy,
+                                         double dz);
+
+// The same joint sliding in the plane through the point x, y, z, where it starts, across its normal nx, ny, nz, of any
+// length but zero.
+struct minvar_joint minvar_joint_on_plane(struct minvar_joint joint,
+                                          double x,
+                                          double y,
+                                          double z,
+                                          double nx,
+                                          double ny,
+                                          double nz);
+
 // The same joint with the tangent x, y, z, of any length but zero, on both sides. `given`: one of enum minvar_given.
 struct minvar_joint minvar_joint_with_tangent(struct minvar_joint joint, uint32_t given, double x, double y, double z);
 
@@ -480,10 +549,15 @@ struct minvar_joint minvar_joint_with_curvature(struct minvar_joint joint,
 // The same joint with another continuity: one of enum minvar_continuity.
 struct minvar_joint minvar_joint_with_continuity(struct minvar_joint joint, uint32_t continuity);
 
-// The number of elements that a curve will have: spans times `elements_per_span`, with one span fewer than joints of
+// The curve through `joint_count` joints, without a reference shape; `closed` as in minvar_curve. The joints stay the
+// caller's.
+struct minvar_curve minvar_curve_through(const struct minvar_joint *joints, size_t joint_count, int32_t closed);
+
+// The number of elements that a curve will have, or with a tolerance the most that it may have: spans times `elements_per_span`, with one span fewer than joints of
 // an open curve and as many as joints of a closed one. Data and options are not checked otherwise; 0 if a pointer is
 // NULL or misaligned.
-size_t minvar_curve_elements_len(const struct minvar_curve *curve, const struct minvar_options *options);
+size_t minvar_curve_elements_len(const struct minvar_curve *curve,
+                                 const struct minvar_options *options);
 
 // The workspace, in doubles, that minvar_curve_solve() needs for these data and options. It depends on the options, on
 // the number of joints, on what is given there and on whether the data lie in a plane, not on the numbers otherwise.
@@ -499,15 +573,16 @@ enum minvar_code minvar_curve_workspace_len(const struct minvar_curve *curve,
 //
 // `workspace`: `workspace_len` doubles, at least what minvar_curve_workspace_len() says, in any condition; what is left
 // in it afterwards means nothing. `observer` may be NULL. `elements` receives minvar_curve_elements_len() elements in
-// order along the curve; `elements_len` is the room. `records` (may be NULL with `records_len` 0) receives a record an
-// iteration as far as it reaches. What lies beyond in either array is left alone. The arrays must not overlap.
+// order along the curve, or with a tolerance as many as `report->elements` says; `elements_len` is the room. `records`
+// (may be NULL with `records_len` 0) receives a record an iteration as far as it reaches. What lies beyond in either array
+// is left alone. The arrays must not overlap.
 //
 // Fixed positions and tangent directions are kept exactly; planar data give a curve in their plane.
 //
 // A curve that did not converge is no error: `report->status` says how the computation ended, and elements and report
 // hold the best curve that was found.
 //
-// Errors: MINVAR_TOO_FEW_JOINTS to MINVAR_RESULT_TOO_SHORT, whatever is wrong with data, options or memory. All are
+// Errors: MINVAR_TOO_FEW_JOINTS to MINVAR_BAD_REFERENCE, whatever is wrong with data, options or memory. All are
 // found before any work: elements, records and report are untouched then.
 enum minvar_code minvar_curve_solve(const struct minvar_curve *curve,
                                     const struct minvar_options *options,
@@ -521,6 +596,25 @@ enum minvar_code minvar_curve_solve(const struct minvar_curve *curve,
                                     size_t records_len,
                                     struct minvar_report *report,
                                     struct minvar_error *error);
+
+// Computes a curve anew from its last solution: a warm start for data that changed a little, as when a joint is dragged.
+//
+// As minvar_curve_solve(), but `elements` holds the last solution, minvar_curve_elements_len() elements, from which the
+// search starts, and receives the new one; what the joints fix is taken from the joints. The search ends in the minimum
+// that belongs to the last solution, so that a curve does not jump while it is dragged. A tolerance is not looked at: the
+// number of elements stays.
+//
+// Errors: as minvar_curve_solve().
+enum minvar_code minvar_curve_update(const struct minvar_curve *curve,
+                                     const struct minvar_options *options,
+                                     double *workspace,
+                                     size_t workspace_len,
+                                     minvar_observer observer,
+                                     void *observer_context,
+                                     struct minvar_element *elements,
+                                     size_t elements_len,
+                                     struct minvar_report *report,
+                                     struct minvar_error *error);
 
 // Measures a chain of `count` elements. Length, V and E are sums over the elements by a 32-point rule: what happens
 // between two of them (a jump of curvature at a G1 joint) does not count.

@@ -62,13 +62,26 @@ using Move = minvar_move;
 using Summary = minvar_gcode_summary;
 
 /// Whether a quantity of a joint is the solver's to choose: free, a start value, or kept exactly.
-enum class Given : std::uint32_t { Free = MINVAR_FREE, Initial = MINVAR_INITIAL, Fixed = MINVAR_FIXED };
+enum class Given : std::uint32_t {
+    Free = MINVAR_FREE,
+    Initial = MINVAR_INITIAL,
+    Fixed = MINVAR_FIXED,
+    OnLine = MINVAR_ON_LINE,
+    OnPlane = MINVAR_ON_PLANE,
+    Size = MINVAR_SIZE,
+};
 
 /// How the two elements at a joint meet: a corner (G0), a common tangent (G1), tangent and curvature (G2).
 enum class Continuity : std::uint32_t { G0 = MINVAR_G0, G1 = MINVAR_G1, G2 = MINVAR_G2 };
 
-/// What a curve is to minimise: the variation of curvature (Mvc) or the bending energy (Mec).
-enum class Functional : std::uint32_t { Mvc = MINVAR_MVC, Mec = MINVAR_MEC };
+/// What a curve is to minimise: the variation of curvature (Mvc), the bending energy (Mec), or their scale-invariant forms,
+/// L^3 times the one (SiMvc) and L times the other (SiMec).
+enum class Functional : std::uint32_t {
+    Mvc = MINVAR_MVC,
+    Mec = MINVAR_MEC,
+    SiMvc = MINVAR_SI_MVC,
+    SiMec = MINVAR_SI_MEC,
+};
 
 /// How a computation ended.
 enum class Status : std::uint32_t {
@@ -200,6 +213,14 @@ public:
     [[nodiscard]] static Joint at(const Vec &point) { return Joint(minvar_joint_at(point[0], point[1], point[2])); }
     /// A G2 joint at a point that is a start value; tangent and curvature are free.
     [[nodiscard]] static Joint start_at(const Vec &point) { return at(point).position(Given::Initial, point); }
+    /// A G2 joint that slides on the line through a point, where it starts, along a direction; tangent and curvature are free.
+    [[nodiscard]] static Joint on_line(const Vec &p, const Vec &d) {
+        return Joint(minvar_joint_on_line(at(p).data_, p[0], p[1], p[2], d[0], d[1], d[2]));
+    }
+    /// A G2 joint that slides in the plane through a point, where it starts, across a normal; tangent and curvature are free.
+    [[nodiscard]] static Joint on_plane(const Vec &p, const Vec &n) {
+        return Joint(minvar_joint_on_plane(at(p).data_, p[0], p[1], p[2], n[0], n[1], n[2]));
+    }
     /// A G2 joint anywhere between its neighbours; tangent and curvature are free.
     [[nodiscard]] static Joint anywhere() { return at({}).position(Given::Free, {}); }
 
@@ -208,6 +229,8 @@ public:
     [[nodiscard]] Joint free_tangent() const { return both(&minvar_joint::tangent, Given::Free, {}); }
     [[nodiscard]] Joint fix_curvature(const Vec &v) const { return both(&minvar_joint::curvature, Given::Fixed, v); }
     [[nodiscard]] Joint start_curvature(const Vec &v) const { return both(&minvar_joint::curvature, Given::Initial, v); }
+    /// A curvature whose size is kept; its direction is that of the start.
+    [[nodiscard]] Joint size_curvature(const Vec &v) const { return both(&minvar_joint::curvature, Given::Size, v); }
     [[nodiscard]] Joint free_curvature() const { return both(&minvar_joint::curvature, Given::Free, {}); }
 
     /// One side alone.
@@ -262,6 +285,10 @@ struct Options {
     std::uint32_t max_iterations = minvar_options_defaults().max_iterations;
     std::uint32_t dimension = minvar_options_defaults().dimension;
     double relative_decrease = minvar_options_defaults().relative_decrease;
+    double tension = minvar_options_defaults().tension;
+    double bending = minvar_options_defaults().bending;
+    double length = minvar_options_defaults().length;
+    double tolerance = minvar_options_defaults().tolerance;
 
     /// As the C interface has it.
     minvar_options data() const noexcept {
@@ -272,6 +299,10 @@ struct Options {
         options.max_iterations = max_iterations;
         options.dimension = dimension;
         options.relative_decrease = relative_decrease;
+        options.tension = tension;
+        options.bending = bending;
+        options.length = length;
+        options.tolerance = tolerance;
         return options;
     }
 };
@@ -285,7 +316,7 @@ using Observer = std::function<bool(std::size_t iteration, const Record &record)
 
 /// A computed curve.
 struct Solution {
-    /// The elements in order along the curve, Options::elements_per_span a span.
+    /// The elements in order along the curve: Options::elements_per_span a span, or with a tolerance fewer.
     std::vector<Element> elements;
     /// How the computation ended, with figures.
     Report report{};
@@ -312,7 +343,7 @@ public:
         for (const Joint &joint : joints) {
             joints_.push_back(joint.data());
         }
-        const minvar_curve curve = {joints_.data(), joints_.size(), closed ? 1 : 0};
+        const minvar_curve curve = minvar_curve_through(joints_.data(), joints_.size(), closed ? 1 : 0);
         const minvar_options chosen = options.data();
         std::size_t needed = 0;
         detail::call(minvar_curve_workspace_len, &curve, &chosen, &needed);
@@ -329,6 +360,36 @@ public:
         detail::call(minvar_curve_solve, &curve, &chosen, workspace_.data(), workspace_.size(),
                      detail::minvar_hpp_observe, &bridge, solution_.elements.data(), solution_.elements.size(),
                      static_cast<minvar_record *>(nullptr), std::size_t{0}, &solution_.report);
+        solution_.elements.resize(solution_.report.elements);
+        bridge.rethrow();
+        return solution_;
+    }
+
+    /// Computes the last curve anew after its joints changed a little, as when one is dragged: a warm start from the last
+    /// solution, which the new one replaces. As many joints and elements as then; the curve does not jump to another
+    /// minimum. Throws as solve() does.
+    const Solution &update(const std::vector<Joint> &joints, bool closed = false, const Options &options = {},
+                           const Observer &observer = {}) {
+        detail::require_abi();
+        joints_.clear();
+        for (const Joint &joint : joints) {
+            joints_.push_back(joint.data());
+        }
+        const minvar_curve curve = minvar_curve_through(joints_.data(), joints_.size(), closed ? 1 : 0);
+        const minvar_options chosen = options.data();
+        std::size_t needed = 0;
+        detail::call(minvar_curve_workspace_len, &curve, &chosen, &needed);
+        if (workspace_.size() < needed) {
+            workspace_.resize(needed);
+        }
+        solution_.records.clear();
+        detail::ObserverBridge bridge([this, &observer](std::size_t iteration, const Record &record) {
+            solution_.records.push_back(record);
+            return !observer || observer(iteration, record);
+        });
+        detail::call(minvar_curve_update, &curve, &chosen, workspace_.data(), workspace_.size(),
+                     detail::minvar_hpp_observe, &bridge, solution_.elements.data(), solution_.elements.size(),
+                     &solution_.report);
         bridge.rethrow();
         return solution_;
     }

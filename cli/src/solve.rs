@@ -79,7 +79,7 @@ pub(crate) struct Error {
 /// Computes the curve.
 pub(crate) fn solve(specification: &Specification, options: &Options) -> Result<Solution, Error> {
     let joints: Vec<Joint> = specification.joints.iter().map(joint).collect();
-    let curve = Curve { joints: &joints, closed: specification.closed };
+    let curve = Curve::new(&joints, specification.closed);
     let kernel_options = curve::Options {
         functional: match options.functional {
             Functional::Mvc => curve::Functional::MVC,
@@ -137,6 +137,7 @@ fn joint(named: &NamedJoint) -> Joint {
         position: quantity(&named.position),
         tangent: [quantity(&named.tangent[0]), quantity(&named.tangent[1])],
         curvature: [quantity(&named.curvature[0]), quantity(&named.curvature[1])],
+        guide: [0.0; 3],
     }
 }
 

@@ -45,12 +45,20 @@ pub enum minvar_code {
     /// A planar curve was asked for but the data do not lie in a plane.
     MINVAR_NOT_PLANAR = 21,
     /// An option has a value that it cannot have; the message names it. `index`: its place among the fields of the
-    /// options, from 0.
+    /// options, from 0; one more than the last for the reference's weight.
     MINVAR_BAD_OPTION = 22,
     /// The workspace is too short. `needed`, `given`, in doubles.
     MINVAR_WORKSPACE_TOO_SMALL = 23,
     /// An array for results is too short; the message names it. `needed`, `given`, in its entries.
     MINVAR_RESULT_TOO_SHORT = 24,
+    /// The line or plane on which a joint slides has the zero vector as its direction. `index`: the joint.
+    MINVAR_ZERO_GUIDE = 25,
+    /// The length that is asked for is no greater than that of the polygon through the fixed joints.
+    MINVAR_LENGTH_TOO_SHORT = 26,
+    /// The reference shape has not as many elements as the curve. `needed`, `given`.
+    MINVAR_WRONG_ELEMENT_COUNT = 27,
+    /// An element of the reference shape or of the start is not finite or has no direction at an end. `index`: the element.
+    MINVAR_BAD_REFERENCE = 28,
     /// There are no elements.
     MINVAR_NO_ELEMENTS = 40,
     /// A number of an element is NaN, infinite or (in paths) beyond 1e100. `index`: the element.
@@ -265,6 +273,12 @@ impl From<&CurveError> for Verdict {
             CurveError::SizeOutOfRange => Self::new(MINVAR_SIZE_OUT_OF_RANGE),
             CurveError::NotPlanar => Self::new(MINVAR_NOT_PLANAR),
             CurveError::BadOption(option) => Self::at(MINVAR_BAD_OPTION, field_of(option)),
+            CurveError::ZeroGuide { joint } => Self::at(MINVAR_ZERO_GUIDE, joint),
+            CurveError::LengthTooShort => Self::new(MINVAR_LENGTH_TOO_SHORT),
+            CurveError::WrongElementCount { needed, given } => {
+                Self::short(MINVAR_WRONG_ELEMENT_COUNT, needed, given)
+            }
+            CurveError::BadElement { element } => Self::at(MINVAR_BAD_REFERENCE, element),
             CurveError::WorkspaceTooSmall { needed, given } => {
                 Self::short(MINVAR_WORKSPACE_TOO_SMALL, needed, given)
             }
@@ -317,7 +331,7 @@ impl From<&GcodeError> for Verdict {
     }
 }
 
-/// The place of an option among the fields of minvar_options.
+/// The place of an option among the fields of minvar_options; the reference's weight comes after them.
 const fn field_of(option: OptionName) -> usize {
     match option {
         OptionName::Functional => 0,
@@ -325,6 +339,11 @@ const fn field_of(option: OptionName) -> usize {
         OptionName::QuadraturePoints => 2,
         OptionName::Dimension => 4,
         OptionName::RelativeDecrease => 5,
+        OptionName::Tension => 6,
+        OptionName::Bending => 7,
+        OptionName::Length => 8,
+        OptionName::Tolerance => 9,
+        OptionName::ReferenceWeight => 10,
     }
 }
 

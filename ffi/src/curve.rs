@@ -3,7 +3,7 @@
 use crate::code::{Failure, answer, minvar_code, minvar_error, minvar_status};
 use crate::raw::{Output, array, array_mut, reference};
 use core::ffi::c_void;
-use kernel::curve::{self, Curve, CurveError, Element, Functional, Joint, Options};
+use kernel::curve::{self, Curve, CurveError, Element, Functional, Joint, Options, Reference, Report};
 use kernel::solve::{Control, Observer, Record};
 
 /// Whether a quantity is the solver's to choose.
@@ -16,6 +16,13 @@ pub enum minvar_given {
     MINVAR_INITIAL = 1,
     /// Kept exactly.
     MINVAR_FIXED = 2,
+    /// Of a position: it slides on the line through the value along the joint's guide; the value is where it starts.
+    MINVAR_ON_LINE = 3,
+    /// Of a position: it slides in the plane through the value across the joint's guide; the value is where it starts.
+    MINVAR_ON_PLANE = 4,
+    /// Of a curvature: its size is kept, its direction is free. The value's direction is where it starts, if it does not
+    /// run along the tangent. A planar curve keeps the side to which it bends at the start.
+    MINVAR_SIZE = 5,
 }
 
 /// How the two elements at a joint meet.
@@ -38,6 +45,11 @@ pub enum minvar_functional {
     MINVAR_MVC = 0,
     /// The bending energy, integral of kappa^2 ds (thesis 4.1); 1/length.
     MINVAR_MEC = 1,
+    /// The scale-invariant MVC, L^3 times the variation of curvature (thesis 4.5): it has a minimum where the MVC grows
+    /// without limit.
+    MINVAR_SI_MVC = 2,
+    /// The scale-invariant MEC, L times the bending energy.
+    MINVAR_SI_MEC = 3,
 }
 
 /// A vector and what it is. The value of a free quantity is not read.
@@ -67,6 +79,9 @@ pub struct minvar_joint {
     pub tangent: [minvar_quantity; 2],
     /// Arriving and leaving curvature vector.
     pub curvature: [minvar_quantity; 2],
+    /// Where the position slides: the direction of its line, or the normal of its plane; of any length but zero. Not read
+    /// otherwise.
+    pub guide: [f64; 3],
 }
 
 /// The designer's data: joints in order along the curve, owned by the caller, only read, and only while a call lasts.
@@ -79,6 +94,16 @@ pub struct minvar_curve {
     pub joint_count: usize,
     /// Not 0: the curve goes on from the last joint to the first, which is not repeated.
     pub closed: i32,
+    /// A reference shape (thesis 4.6), or NULL: the curve minimises the integral of (d kappa/ds - w d kappa0/ds)^2 ds
+    /// with kappa0 the reference's curvature vector at the same element and parameter. As many elements as the curve has.
+    /// The search starts from it. With the weight 1 and its own joints the curve is the reference, and joints that move
+    /// deform it; with 0 it is the minimum variation curve. The speed's relative change along an element is held to the
+    /// reference's. For MINVAR_MVC, without a tolerance.
+    pub reference: *const minvar_element,
+    /// How many elements the reference has; 0 without one.
+    pub reference_count: usize,
+    /// The weight w of the reference, 0 to 1.
+    pub reference_weight: f64,
 }
 
 /// The options of a curve: start from minvar_options_defaults().
@@ -98,6 +123,17 @@ pub struct minvar_options {
     /// Converged when another step promises to lower the functional by less than this fraction, or 20 iterations
     /// together lowered it by less than a thousand times that; 0 to below 1. Default 1e-12.
     pub relative_decrease: f64,
+    /// This weight times the length is added to the functional: a tension. In the functional's unit over a length, 0 or
+    /// more; 0 with a scale-invariant functional. Default 0.
+    pub tension: f64,
+    /// This weight times the bending energy is added to the functional. In the functional's unit times a length, 0 or
+    /// more; 0 with a scale-invariant functional. Default 0.
+    pub bending: f64,
+    /// The length of the curve; 0 leaves it free. Default 0.
+    pub length: f64,
+    /// How far the curve may be from the true minimum, a length: spans are divided further until an estimate is below it,
+    /// into at most `elements_per_span` elements each. 0 takes just `elements_per_span`. Default 0.
+    pub tolerance: f64,
 }
 
 /// A quintic element in Hermite form (thesis 4.5). Plain data: it may be copied, stored and sent.
@@ -135,6 +171,8 @@ pub struct minvar_report {
     pub status: minvar_status,
     /// 1 if the curve was computed in a plane, 0 in space.
     pub planar: i32,
+    /// How many elements the curve has: as many as minvar_curve_elements_len() says, or fewer with a tolerance.
+    pub elements: usize,
     /// The number of iterations: trial steps, accepted or not.
     pub iterations: usize,
     /// How often an element was linearised, over all elements: the work that was done.
@@ -152,6 +190,9 @@ pub struct minvar_report {
     pub variation: f64,
     /// The bending energy E, integral of kappa^2 ds; 1/length.
     pub bending: f64,
+    /// The estimated distance from the true minimum, where a tolerance was asked for, else 0; infinite where there is no
+    /// estimate.
+    pub error: f64,
     /// The largest gradient component, each times its unknown's natural size, as a fraction of the functional.
     pub gradient: f64,
     /// The decrease that another Newton step would promise; infinite where the Hessian is not positive definite.
@@ -179,7 +220,7 @@ pub(crate) use same_layout;
 
 same_layout!(minvar_quantity = curve::Quantity { given = given, value = value });
 same_layout!(minvar_joint = Joint {
-    continuity = continuity, position = position, tangent = tangent, curvature = curvature
+    continuity = continuity, position = position, tangent = tangent, curvature = curvature, guide = guide
 });
 same_layout!(minvar_element = Element { rows = rows });
 same_layout!(minvar_record = Record {
@@ -195,7 +236,14 @@ unsafe fn view<'a>(curve: *const minvar_curve) -> Result<Curve<'a>, Failure> {
     let data = unsafe { reference(curve, "curve")? };
     // SAFETY: promised by the caller; the layouts are the same, and the kernel's joint is numbers without invalid values.
     let joints = unsafe { array(data.joints.cast::<Joint>(), data.joint_count, "curve->joints")? };
-    Ok(Curve { joints, closed: data.closed != 0 })
+    let curve = Curve::new(joints, data.closed != 0);
+    if data.reference.is_null() && data.reference_count == 0 {
+        return Ok(curve);
+    }
+    // SAFETY: as above.
+    let elements =
+        unsafe { array(data.reference.cast::<Element>(), data.reference_count, "curve->reference")? };
+    Ok(curve.with_reference(Reference { elements, weight: data.reference_weight }))
 }
 
 /// # Safety
@@ -210,6 +258,10 @@ unsafe fn options_of(options: *const minvar_options) -> Result<Options, Failure>
         max_iterations: given.max_iterations,
         dimension: given.dimension,
         relative_decrease: given.relative_decrease,
+        tension: given.tension,
+        bending: given.bending,
+        length: given.length,
+        tolerance: given.tolerance,
     })
 }
 
@@ -224,6 +276,10 @@ pub extern "C" fn minvar_options_defaults() -> minvar_options {
         max_iterations: defaults.max_iterations,
         dimension: defaults.dimension,
         relative_decrease: defaults.relative_decrease,
+        tension: defaults.tension,
+        bending: defaults.bending,
+        length: defaults.length,
+        tolerance: defaults.tolerance,
     }
 }
 
@@ -238,7 +294,42 @@ pub extern "C" fn minvar_joint_at(x: f64, y: f64, z: f64) -> minvar_joint {
         position: minvar_quantity { given: minvar_given::MINVAR_FIXED as u32, value: [x, y, z] },
         tangent: [FREE; 2],
         curvature: [FREE; 2],
+        guide: [0.0; 3],
     }
+}
+
+/// The same joint sliding on the line through the point x, y, z, where it starts, along dx, dy, dz, of any length but
+/// zero.
+#[unsafe(no_mangle)]
+pub extern "C" fn minvar_joint_on_line(
+    joint: minvar_joint,
+    x: f64,
+    y: f64,
+    z: f64,
+    dx: f64,
+    dy: f64,
+    dz: f64,
+) -> minvar_joint {
+    sliding(joint, minvar_given::MINVAR_ON_LINE, [x, y, z], [dx, dy, dz])
+}
+
+/// The same joint sliding in the plane through the point x, y, z, where it starts, across its normal nx, ny, nz, of any
+/// length but zero.
+#[unsafe(no_mangle)]
+pub extern "C" fn minvar_joint_on_plane(
+    joint: minvar_joint,
+    x: f64,
+    y: f64,
+    z: f64,
+    nx: f64,
+    ny: f64,
+    nz: f64,
+) -> minvar_joint {
+    sliding(joint, minvar_given::MINVAR_ON_PLANE, [x, y, z], [nx, ny, nz])
+}
+
+fn sliding(joint: minvar_joint, given: minvar_given, value: [f64; 3], guide: [f64; 3]) -> minvar_joint {
+    minvar_joint { position: minvar_quantity { given: given as u32, value }, guide, ..joint }
 }
 
 /// The same joint with the tangent x, y, z, of any length but zero, on both sides. `given`: one of enum minvar_given.
@@ -272,7 +363,25 @@ pub extern "C" fn minvar_joint_with_continuity(joint: minvar_joint, continuity: 
     minvar_joint { continuity, ..joint }
 }
 
-/// The number of elements that a curve will have: spans times `elements_per_span`, with one span fewer than joints of
+/// The curve through `joint_count` joints, without a reference shape; `closed` as in minvar_curve. The joints stay the
+/// caller's.
+#[unsafe(no_mangle)]
+pub extern "C" fn minvar_curve_through(
+    joints: *const minvar_joint,
+    joint_count: usize,
+    closed: i32,
+) -> minvar_curve {
+    minvar_curve {
+        joints,
+        joint_count,
+        closed,
+        reference: core::ptr::null(),
+        reference_count: 0,
+        reference_weight: 0.0,
+    }
+}
+
+/// The number of elements that a curve will have, or with a tolerance the most that it may have: spans times `elements_per_span`, with one span fewer than joints of
 /// an open curve and as many as joints of a closed one. Data and options are not checked otherwise; 0 if a pointer is
 /// NULL or misaligned.
 #[unsafe(no_mangle)]
@@ -326,19 +435,39 @@ impl Observer for Watch {
     }
 }
 
+fn report_of(found: &Report) -> minvar_report {
+    minvar_report {
+        status: found.status.into(),
+        planar: i32::from(found.planar),
+        elements: found.elements,
+        iterations: found.iterations,
+        linearisations: found.linearisations,
+        unknowns: found.unknowns,
+        value: found.value,
+        fine_value: found.fine_value,
+        length: found.length,
+        variation: found.variation,
+        bending: found.bending,
+        error: found.error,
+        gradient: found.gradient,
+        decrement: found.decrement,
+    }
+}
+
 /// Computes a curve (thesis chapter 4).
 ///
 /// `workspace`: `workspace_len` doubles, at least what minvar_curve_workspace_len() says, in any condition; what is left
 /// in it afterwards means nothing. `observer` may be NULL. `elements` receives minvar_curve_elements_len() elements in
-/// order along the curve; `elements_len` is the room. `records` (may be NULL with `records_len` 0) receives a record an
-/// iteration as far as it reaches. What lies beyond in either array is left alone. The arrays must not overlap.
+/// order along the curve, or with a tolerance as many as `report->elements` says; `elements_len` is the room. `records`
+/// (may be NULL with `records_len` 0) receives a record an iteration as far as it reaches. What lies beyond in either array
+/// is left alone. The arrays must not overlap.
 ///
 /// Fixed positions and tangent directions are kept exactly; planar data give a curve in their plane.
 ///
 /// A curve that did not converge is no error: `report->status` says how the computation ended, and elements and report
 /// hold the best curve that was found.
 ///
-/// Errors: MINVAR_TOO_FEW_JOINTS to MINVAR_RESULT_TOO_SHORT, whatever is wrong with data, options or memory. All are
+/// Errors: MINVAR_TOO_FEW_JOINTS to MINVAR_BAD_REFERENCE, whatever is wrong with data, options or memory. All are
 /// found before any work: elements, records and report are untouched then.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn minvar_curve_solve(
@@ -365,21 +494,50 @@ pub unsafe extern "C" fn minvar_curve_solve(
             let records = array_mut(records.cast::<Record>(), records_len, "records")?;
             let report = Output::new(report, "report")?;
             let mut watch = Watch { observer, context: observer_context };
-            let found = curve::solve(&curve, &options, workspace, elements, records, &mut watch)?;
-            report.put(minvar_report {
-                status: found.status.into(),
-                planar: i32::from(found.planar),
-                iterations: found.iterations,
-                linearisations: found.linearisations,
-                unknowns: found.unknowns,
-                value: found.value,
-                fine_value: found.fine_value,
-                length: found.length,
-                variation: found.variation,
-                bending: found.bending,
-                gradient: found.gradient,
-                decrement: found.decrement,
-            });
+            report.put(report_of(&curve::solve(&curve, &options, workspace, elements, records, &mut watch)?));
+            Ok(())
+        })
+    }
+}
+
+/// Computes a curve anew from its last solution: a warm start for data that changed a little, as when a joint is dragged.
+///
+/// As minvar_curve_solve(), but `elements` holds the last solution, minvar_curve_elements_len() elements, from which the
+/// search starts, and receives the new one; what the joints fix is taken from the joints. The search ends in the minimum
+/// that belongs to the last solution, so that a curve does not jump while it is dragged. A tolerance is not looked at: the
+/// number of elements stays.
+///
+/// Errors: as minvar_curve_solve().
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn minvar_curve_update(
+    curve: *const minvar_curve,
+    options: *const minvar_options,
+    workspace: *mut f64,
+    workspace_len: usize,
+    observer: minvar_observer,
+    observer_context: *mut c_void,
+    elements: *mut minvar_element,
+    elements_len: usize,
+    report: *mut minvar_report,
+    error: *mut minvar_error,
+) -> minvar_code {
+    // SAFETY: promised by the caller; the layouts of elements are the same as the kernel's.
+    unsafe {
+        answer::<CurveError>(error, || {
+            let curve = view(curve)?;
+            let options = options_of(options)?;
+            let workspace = array_mut(workspace, workspace_len, "workspace")?;
+            let elements = array_mut(elements.cast::<Element>(), elements_len, "elements")?;
+            let report = Output::new(report, "report")?;
+            let mut watch = Watch { observer, context: observer_context };
+            report.put(report_of(&curve::update(
+                &curve,
+                &options,
+                workspace,
+                elements,
+                &mut [],
+                &mut watch,
+            )?));
             Ok(())
         })
     }

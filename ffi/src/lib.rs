@@ -26,7 +26,7 @@ pub use toolpath::*;
 use core::ffi::c_char;
 
 /// The number of this interface. It grows when something changes that compiled programs would notice.
-pub const MINVAR_ABI: u32 = 1;
+pub const MINVAR_ABI: u32 = 2;
 
 /// The version of the library as `"MAJOR.MINOR.PATCH"`; static: not to be freed.
 #[unsafe(no_mangle)]

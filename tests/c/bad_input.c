@@ -106,7 +106,7 @@ static const double BAD[3] = {NAN, INFINITY, -INFINITY};
 /* ---- the curve functions ---- */
 
 static minvar_joint joints[4];
-static minvar_curve data = {joints, 4, 0};
+static minvar_curve data = {.joints = joints, .joint_count = 4};
 static minvar_options options_data;
 static const minvar_curve *curve = &data;
 static const minvar_options *options = &options_data;
@@ -135,7 +135,7 @@ static void reset(void) {
         minvar_joint_with_tangent(minvar_joint_at(1, 1, 0), MINVAR_INITIAL, 1, 1, 0), MINVAR_INITIAL, 0.1, -0.1, 0);
     joints[2] = minvar_joint_at(2, 1, 0);
     joints[3] = minvar_joint_at(3, 0, 0);
-    data = (minvar_curve){joints, 4, 0};
+    data = minvar_curve_through(joints, 4, 0);
     options_data = minvar_options_defaults();
     workspace_len = 20000;
     elements_len = 8;
@@ -217,7 +217,7 @@ static void curve_functions(void) {
         }
     }
 
-    static const uint32_t unknown[2] = {3, UINT32_MAX};
+    static const uint32_t unknown[2] = {6, UINT32_MAX};
     for (int i = 0; i < 2; i++) {
         joints[3].continuity = unknown[i];
         REFUSED_CURVE(MINVAR_UNKNOWN_CODE, 3, "continuity of joint 3");
@@ -273,7 +273,7 @@ static void curve_functions(void) {
     options_data.dimension = 2;
     REFUSED_CURVE(MINVAR_NOT_PLANAR, 0, "plane");
 
-    options_data.functional = 2;
+    options_data.functional = 99;
     REFUSED_CURVE(MINVAR_BAD_OPTION, 0, "functional");
     options_data.elements_per_span = 0;
     REFUSED_CURVE(MINVAR_BAD_OPTION, 1, "elements_per_span");

@@ -29,7 +29,7 @@ typedef struct {
 static void solve(result *r, unsigned char dirt, size_t records_len, watcher *w) {
     minvar_joint joints[2];
     coving(joints);
-    const minvar_curve curve = {joints, 2, 0};
+    const minvar_curve curve = minvar_curve_through(joints, 2, 0);
     minvar_options options = minvar_options_defaults();
     options.elements_per_span = ELEMENTS;
     memset(workspace, dirt, sizeof workspace);

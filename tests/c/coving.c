@@ -6,7 +6,7 @@
 static void solve(uint32_t elements_per_span, double variation) {
     minvar_joint joints[2];
     coving(joints);
-    const minvar_curve curve = {joints, 2, 0};
+    const minvar_curve curve = minvar_curve_through(joints, 2, 0);
     minvar_options options = minvar_options_defaults();
     options.elements_per_span = elements_per_span;
 

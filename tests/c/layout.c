@@ -25,12 +25,16 @@ FIELD(minvar_joint, continuity, 0);
 FIELD(minvar_joint, position, 8);
 FIELD(minvar_joint, tangent, 40);
 FIELD(minvar_joint, curvature, 104);
-SIZE(minvar_joint, 168);
+FIELD(minvar_joint, guide, 168);
+SIZE(minvar_joint, 192);
 
 FIELD(minvar_curve, joints, 0);
 FIELD(minvar_curve, joint_count, 8);
 FIELD(minvar_curve, closed, 16);
-SIZE(minvar_curve, 24);
+FIELD(minvar_curve, reference, 24);
+FIELD(minvar_curve, reference_count, 32);
+FIELD(minvar_curve, reference_weight, 40);
+SIZE(minvar_curve, 48);
 
 FIELD(minvar_options, functional, 0);
 FIELD(minvar_options, elements_per_span, 4);
@@ -38,7 +42,11 @@ FIELD(minvar_options, quadrature_points, 8);
 FIELD(minvar_options, max_iterations, 12);
 FIELD(minvar_options, dimension, 16);
 FIELD(minvar_options, relative_decrease, 24);
-SIZE(minvar_options, 32);
+FIELD(minvar_options, tension, 32);
+FIELD(minvar_options, bending, 40);
+FIELD(minvar_options, length, 48);
+FIELD(minvar_options, tolerance, 56);
+SIZE(minvar_options, 64);
 
 FIELD(minvar_element, rows, 0);
 SIZE(minvar_element, 144);
@@ -53,17 +61,19 @@ SIZE(minvar_record, 48);
 
 FIELD(minvar_report, status, 0);
 FIELD(minvar_report, planar, 4);
-FIELD(minvar_report, iterations, 8);
-FIELD(minvar_report, linearisations, 16);
-FIELD(minvar_report, unknowns, 24);
-FIELD(minvar_report, value, 32);
-FIELD(minvar_report, fine_value, 40);
-FIELD(minvar_report, length, 48);
-FIELD(minvar_report, variation, 56);
-FIELD(minvar_report, bending, 64);
-FIELD(minvar_report, gradient, 72);
-FIELD(minvar_report, decrement, 80);
-SIZE(minvar_report, 88);
+FIELD(minvar_report, elements, 8);
+FIELD(minvar_report, iterations, 16);
+FIELD(minvar_report, linearisations, 24);
+FIELD(minvar_report, unknowns, 32);
+FIELD(minvar_report, value, 40);
+FIELD(minvar_report, fine_value, 48);
+FIELD(minvar_report, length, 56);
+FIELD(minvar_report, variation, 64);
+FIELD(minvar_report, bending, 72);
+FIELD(minvar_report, error, 80);
+FIELD(minvar_report, gradient, 88);
+FIELD(minvar_report, decrement, 96);
+SIZE(minvar_report, 104);
 
 FIELD(minvar_point, element, 0);
 FIELD(minvar_point, parameter, 8);
@@ -140,6 +150,7 @@ int main(void) {
     PRINT(position);
     PRINT(tangent);
     PRINT(curvature);
+    PRINT(guide);
     END();
 #undef TYPE
 #define TYPE minvar_curve
@@ -147,6 +158,9 @@ int main(void) {
     PRINT(joints);
     PRINT(joint_count);
     PRINT(closed);
+    PRINT(reference);
+    PRINT(reference_count);
+    PRINT(reference_weight);
     END();
 #undef TYPE
 #define TYPE minvar_options
@@ -157,6 +171,10 @@ int main(void) {
     PRINT(max_iterations);
     PRINT(dimension);
     PRINT(relative_decrease);
+    PRINT(tension);
+    PRINT(bending);
+    PRINT(length);
+    PRINT(tolerance);
     END();
 #undef TYPE
 #define TYPE minvar_element
@@ -178,6 +196,7 @@ int main(void) {
     BEGIN("minvar_report");
     PRINT(status);
     PRINT(planar);
+    PRINT(elements);
     PRINT(iterations);
     PRINT(linearisations);
     PRINT(unknowns);
@@ -186,6 +205,7 @@ int main(void) {
     PRINT(length);
     PRINT(variation);
     PRINT(bending);
+    PRINT(error);
     PRINT(gradient);
     PRINT(decrement);
     END();

@@ -51,7 +51,7 @@ static size_t stack_of(void *(*run)(void *), void *data) {
 }
 
 static void report(const char *name, const minvar_joint *joints, size_t count, unsigned per_span) {
-    const minvar_curve curve = {joints, count, 0};
+    const minvar_curve curve = minvar_curve_through(joints, count, 0);
     minvar_options options = minvar_options_defaults();
     options.elements_per_span = per_span;
     job j = {.curve = &curve, .options = &options};

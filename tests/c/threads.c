@@ -7,7 +7,7 @@
 enum { THREADS = 2, ROUNDS = 10, JOINTS = 7, PER_SPAN = 4, ELEMENTS = (JOINTS - 1) * PER_SPAN };
 
 static minvar_joint joints[JOINTS];
-static const minvar_curve curve = {joints, JOINTS, 0};
+static const minvar_curve curve = {.joints = joints, .joint_count = JOINTS};
 static minvar_options options;
 
 typedef struct {

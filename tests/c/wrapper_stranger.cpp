@@ -1,7 +1,7 @@
 // A program that was compiled with another interface than the library has: refused before anything is called.
 #include "minvar.h"
 #undef MINVAR_ABI
-#define MINVAR_ABI 2
+#define MINVAR_ABI 1
 #include "minvar.hpp"
 
 #include "check.h"

@@ -65,7 +65,7 @@ pub fn ours(
     elements_per_span: usize,
 ) -> (Report, Vec<Element>) {
     let joints = kernel_joints(figure);
-    let curve = Curve { joints: &joints, closed: figure.closed };
+    let curve = Curve::new(&joints, figure.closed);
     let options = Options {
         functional: match functional {
             ceres::Functional::Mec => curve::Functional::MEC,

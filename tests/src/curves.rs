@@ -25,7 +25,7 @@ pub fn solve_curve(
     closed: bool,
     options: &Options,
 ) -> Result<(Report, Vec<Element>), CurveError> {
-    let curve = Curve { joints, closed };
+    let curve = Curve::new(joints, closed);
     let mut workspace = vec![f64::NAN; workspace_len(&curve, options)?];
     let mut elements = vec![MARKER; elements_len(&curve, options)];
     let report = solve(&curve, options, &mut workspace, &mut elements, &mut [], &mut Silent)?;

@@ -1,4 +1,5 @@
-//! What minvar is checked against: the thesis's Appendix A as data and an independent reference solver built on Ceres.
+//! What minvar is checked against: the thesis's Appendix A as data, an independent reference solver built on Ceres, and
+//! true planar curves in arc length.
 
 pub mod appendix;
 pub mod ceres;
@@ -6,3 +7,4 @@ pub mod compare;
 pub mod curves;
 pub mod paths;
 pub mod toolchain;
+pub mod truth;

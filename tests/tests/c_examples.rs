@@ -65,7 +65,7 @@ fn the_coving_has_the_figures_of_the_true_curve_and_clears_the_duct() {
             .with_curvature(Quantity::fixed([clear[0], 0.0, 0.0])),
         Joint::at([20.0, -0.5, 0.0]).with_tangent(Quantity::fixed([1.0, 0.0, 0.0])),
     ];
-    let curve = Curve { joints: &joints, closed: false };
+    let curve = Curve::open(&joints);
     let options = Options { elements_per_span: 8, ..Options::DEFAULT };
     let mut workspace = vec![0.0; curve::workspace_len(&curve, &options).expect("good data")];
     let mut elements = [Element::ZERO; 8];

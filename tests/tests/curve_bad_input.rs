@@ -23,7 +23,7 @@ fn good() -> Vec<Joint> {
 
 /// Solves with elements of markers; they must be left alone by an error.
 fn attempt(joints: &[Joint], closed: bool, options: &Options) -> (Result<Report, CurveError>, Vec<Element>) {
-    let curve = Curve { joints, closed };
+    let curve = Curve::new(joints, closed);
     let asked = workspace_len(&curve, options);
     let mut workspace = vec![f64::NAN; asked.unwrap_or(100_000)];
     let mut elements = vec![MARKER; elements_len(&curve, options).min(100_000)];
@@ -116,8 +116,27 @@ fn the_value_of_a_free_quantity_is_not_read() {
 }
 
 #[test]
+fn codes_of_other_quantities_are_refused() {
+    let with = |given| Quantity { given, value: [1.0, 0.0, 0.0] };
+    for (given, part) in [
+        (Given::SIZE, Part::Position),
+        (Given::SIZE, Part::Tangent),
+        (Given::ON_LINE, Part::Tangent),
+        (Given::ON_PLANE, Part::Curvature),
+    ] {
+        let mut joints = good();
+        match part {
+            Part::Position => joints[2].position = with(given),
+            Part::Tangent => joints[2].tangent = [with(given); 2],
+            _ => joints[2].curvature = [with(given); 2],
+        }
+        refuses(&joints, CurveError::UnknownCode { joint: 2, part }, &["joint 2"]);
+    }
+}
+
+#[test]
 fn unknown_codes_are_refused() {
-    for code in [3, 4, 1000, u32::MAX] {
+    for code in [6, 7, 1000, u32::MAX] {
         let unknown = Quantity { given: Given(code), value: [1.0, 0.0, 0.0] };
         let error = |part| CurveError::UnknownCode { joint: 2, part };
         let mut joints = good();
@@ -299,7 +318,7 @@ fn options_out_of_range_are_refused_and_those_in_range_are_not() {
         // Options are looked at before the joints.
         refused(&[], false, &options, CurveError::BadOption(name), &[]);
     };
-    for code in [2, 3, u32::MAX] {
+    for code in [4, 5, 99, u32::MAX] {
         bad(Options { functional: Functional(code), ..base }, OptionName::Functional, "functional");
     }
     for elements_per_span in [0, 1025, u32::MAX] {
@@ -356,7 +375,7 @@ fn a_workspace_one_too_short_is_refused_with_the_length_that_works() {
         for closed in [false, true] {
             for elements_per_span in [1, 2, 7] {
                 let (curve, options) =
-                    (Curve { joints: &joints, closed }, Options { elements_per_span, ..Options::DEFAULT });
+                    (Curve::new(&joints, closed), Options { elements_per_span, ..Options::DEFAULT });
                 let Ok(right) = workspace_len(&curve, &options) else { continue };
                 let mut elements = vec![MARKER; elements_len(&curve, &options)];
                 for given in [right - 1, right / 2, 1, 0] {
@@ -384,7 +403,7 @@ fn room_for_one_element_too_few_is_refused_with_the_number_that_works() {
     let joints = good();
     for (closed, elements_per_span) in [(false, 1), (false, 5), (true, 1), (true, 3)] {
         let (curve, options) =
-            (Curve { joints: &joints, closed }, Options { elements_per_span, ..Options::DEFAULT });
+            (Curve::new(&joints, closed), Options { elements_per_span, ..Options::DEFAULT });
         let needed = elements_len(&curve, &options);
         assert_eq!(needed, if closed { 3 } else { 2 } * elements_per_span as usize);
         let mut workspace = vec![0.0; workspace_len(&curve, &options).expect("good data")];
@@ -461,8 +480,7 @@ fn a_curve_cancelled_at_any_iteration_is_a_curve() {
         Joint::at([4.0, 1.6, 0.0]),
     ];
     for functional in [Functional::MVC, Functional::MEC] {
-        let (curve, options) =
-            (Curve { joints: &joints, closed: false }, Options { functional, ..Options::DEFAULT });
+        let (curve, options) = (Curve::open(&joints), Options { functional, ..Options::DEFAULT });
         let mut workspace = vec![f64::NAN; workspace_len(&curve, &options).expect("good data")];
         let mut run = |at: usize| {
             let mut elements = vec![MARKER; 4];
@@ -525,7 +543,7 @@ fn a_thousand_joints_converge_in_time_and_memory_proportional_to_their_number() 
             for count in [100, 1000] {
                 let joints = wave(count, closed);
                 let options = Options { functional, ..Options::DEFAULT };
-                let len = workspace_len(&Curve { joints: &joints, closed }, &options).expect("good data");
+                let len = workspace_len(&Curve::new(&joints, closed), &options).expect("good data");
                 let start = Instant::now();
                 let (report, _) = solve_curve(&joints, closed, &options).expect("good data");
                 let each = start.elapsed().as_secs_f64() / count as f64;
@@ -638,6 +656,7 @@ fn options() -> impl Strategy<Value = Options> {
                 max_iterations,
                 dimension,
                 relative_decrease,
+                ..Options::DEFAULT
             },
         )
 }

@@ -37,7 +37,7 @@ struct Data {
 
 impl Data {
     fn curve(&self) -> Curve<'_> {
-        Curve { joints: &self.joints, closed: self.closed }
+        Curve::new(&self.joints, self.closed)
     }
 
     fn spans(&self) -> usize {
@@ -770,7 +770,9 @@ fn initial_values_are_start_values_only() {
         Joint::at([2.0, 0.3, 0.3]),
         Joint::at([3.0, 0.9, 0.2]),
     ];
-    let (report, elements) = solve_curve(&plain, false, &Options::DEFAULT).expect("good data");
+    // One element a span has several minima for one shape; two have none that differ visibly.
+    let two = Options { elements_per_span: 2, ..Options::DEFAULT };
+    let (report, elements) = solve_curve(&plain, false, &two).expect("good data");
     assert_eq!(report.status, Status::Converged);
     let mut seeded = plain;
     seeded[1] = seeded[1].with_tangent(Quantity::initial([1.0, 0.5, 0.3]));
@@ -778,12 +780,13 @@ fn initial_values_are_start_values_only() {
         .with_tangent(Quantity::initial([3.0, -0.3, 0.0]))
         .with_curvature(Quantity::initial([0.0, 0.0, 1.0]));
     seeded[3] = seeded[3].with_tangent(Quantity::initial([1.0, 0.0, 0.0]));
-    let (other, found) = solve_curve(&seeded, false, &Options::DEFAULT).expect("good data");
+    let (other, found) = solve_curve(&seeded, false, &two).expect("good data");
     assert_eq!(other.status, Status::Converged);
     assert_eq!(other.unknowns, report.unknowns);
-    assert!((other.value - report.value).abs() < 2e-5 * report.value);
+    assert!((other.value - report.value).abs() < 1e-7 * report.value);
     assert!(deviation(&elements, &found, 3) < 1e-4);
 
+    let (report, _) = solve_curve(&plain, false, &Options::DEFAULT).expect("good data");
     // A point that is only a start value is left by the curve, which then is that of the other points.
     let mut pushed = plain;
     pushed[2] = pushed[2].with_position(Quantity::initial([2.0, 0.4, 0.25]));
@@ -793,7 +796,6 @@ fn initial_values_are_start_values_only() {
     assert!(distance(found[1].rows[5], [2.0, 0.4, 0.25]) > 1e-3);
     assert_eq!(found[0].rows[5], found[1].rows[0]);
     let free = [plain[0], plain[1], plain[3]];
-    let two = Options { elements_per_span: 2, ..Options::DEFAULT };
     let (_, fewer) = solve_curve(&free, false, &two).expect("good data");
     let ends: Vec<Element> = fewer[2..].to_vec();
     assert!(deviation(&ends, &found[1..], 1) < 1e-4);

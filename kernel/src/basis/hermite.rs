@@ -5,7 +5,7 @@
 /// The six blending functions `H_0 … H_5` and their derivatives to third order at one parameter.
 ///
 /// `basis(t)[k][a]` is the `k`-th derivative of `H_a` at `t`; any finite `t` is allowed, `[0, 1]` is the element.
-pub fn basis(t: f64) -> [[f64; 6]; 4] {
+pub const fn basis(t: f64) -> [[f64; 6]; 4] {
     let t2 = t * t;
     let t3 = t2 * t;
     let t4 = t3 * t;

@@ -2,4 +2,6 @@
 
 pub mod bernstein;
 pub mod hermite;
+pub(crate) mod lanes;
+pub(crate) mod mirrored;
 pub mod quadrature;

@@ -1,5 +1,6 @@
 //! Whether a curve's data make sense, before any work.
 
+use super::element::Element;
 use super::error::{CurveError, Part};
 use super::joint::{Continuity, Curve, Given, Joint, Quantity};
 use nalgebra::Vector3;
@@ -12,7 +13,13 @@ const LARGEST_EXTENT: f64 = 1e100;
 const PERPENDICULAR: f64 = 1e-6;
 
 fn check_quantity(joint: usize, part: Part, quantity: &Quantity) -> Result<(), CurveError> {
-    if quantity.given.0 > Given::FIXED.0 {
+    let known = match quantity.given {
+        Given::FREE | Given::INITIAL | Given::FIXED => true,
+        Given::ON_LINE | Given::ON_PLANE => part == Part::Position,
+        Given::SIZE => part == Part::Curvature,
+        _ => false,
+    };
+    if !known {
         return Err(CurveError::UnknownCode { joint, part });
     }
     if quantity.given != Given::FREE && quantity.value.iter().any(|x| !x.is_finite()) {
@@ -36,6 +43,14 @@ fn check_joint(joint: usize, data: &Joint) -> Result<(), CurveError> {
         return Err(CurveError::UnknownCode { joint, part: Part::Continuity });
     }
     check_quantity(joint, Part::Position, &data.position)?;
+    if matches!(data.position.given, Given::ON_LINE | Given::ON_PLANE) {
+        if data.guide.iter().any(|x| !x.is_finite()) {
+            return Err(CurveError::NotFinite { joint, part: Part::Guide });
+        }
+        if direction(&data.guide).is_none() {
+            return Err(CurveError::ZeroGuide { joint });
+        }
+    }
     for side in 0..2 {
         let (tangent, curvature) = (&data.tangent[side], &data.curvature[side]);
         check_quantity(joint, Part::Tangent, tangent)?;
@@ -45,7 +60,8 @@ fn check_joint(joint: usize, data: &Joint) -> Result<(), CurveError> {
         } else {
             Some(direction(&tangent.value).ok_or(CurveError::ZeroTangent { joint })?)
         };
-        if let (Some(towards), true) = (towards, curvature.given != Given::FREE)
+        let directed = matches!(curvature.given, Given::INITIAL | Given::FIXED);
+        if let (Some(towards), true) = (towards, directed)
             && let Some(across) = direction(&curvature.value)
             && across.dot(&towards).abs() > PERPENDICULAR
         {
@@ -111,4 +127,36 @@ pub(super) fn check(curve: &Curve<'_>) -> Result<f64, CurveError> {
     }
     let (_, exponent) = libm::frexp(longest);
     Ok(libm::scalbn(1.0, exponent))
+}
+
+/// Whether elements can be a start or a reference: finite, with a direction at either end.
+pub(super) fn check_elements(elements: &[Element]) -> Result<(), CurveError> {
+    for (element, Element { rows }) in elements.iter().enumerate() {
+        let good = rows.iter().flatten().all(|x| x.abs() <= LARGEST_EXTENT)
+            && direction(&rows[1]).is_some()
+            && direction(&rows[4]).is_some();
+        if !good {
+            return Err(CurveError::BadElement { element });
+        }
+    }
+    Ok(())
+}
+
+/// Whether a length that is asked for (0 if none is) can be met: it must be greater than the polygon's through the fixed
+/// joints.
+pub(super) fn check_length(curve: &Curve<'_>, length: f64) -> Result<(), CurveError> {
+    if length == 0.0 {
+        return Ok(());
+    }
+    let mut fixed = curve.joints.iter().filter(|joint| joint.position.given == Given::FIXED);
+    let Some(first) = fixed.next() else { return Ok(()) };
+    let (mut sum, mut last) = (0.0, Vector3::from(first.position.value));
+    let back = if curve.closed { Some(first) } else { None };
+    for joint in fixed.chain(back) {
+        let here = Vector3::from(joint.position.value);
+        let step = here - last;
+        sum += libm::sqrt(step.dot(&step));
+        last = here;
+    }
+    if length > sum { Ok(()) } else { Err(CurveError::LengthTooShort) }
 }

@@ -10,6 +10,7 @@
 //! along its tangent follows the osculating parabola `p + s t + ½ s² κ`: a free node may slide along the curve without
 //! changing it, and a straight step would leave it.
 
+use core::ops::Range;
 use nalgebra::SVector;
 
 /// One end of an element: what the rows `P, P', P''` are made of.
@@ -53,10 +54,22 @@ pub(super) fn rows_between<const D: usize>(ends: &[End<D>; 2]) -> [SVector<f64, 
     [p0, v0, a0, a1, v1, p1]
 }
 
-/// The Hermite row (`C(0), C'(0), C''(0), C''(1), C'(1), C(1)`) of the `order`-th derivative at an end.
+/// Where among `chord, C'(0), C''(0), C''(1), C'(1)` the `order`-th derivative at an end stands.
 #[inline]
 pub(super) const fn row_of(end: usize, order: usize) -> usize {
-    if end == 0 { order } else { 5 - order }
+    if end == 0 || order == 0 { order } else { 5 - order }
+}
+
+impl Coordinate {
+    /// The derivatives `P, P', P''` that a coordinate moves, by order.
+    #[inline]
+    pub(super) const fn orders(self) -> Range<usize> {
+        match self {
+            Self::Point(_) | Self::Along(_) => 0..1,
+            Self::Tangent(_) | Self::Speed => 1..3,
+            Self::Curvature(_) | Self::Turn | Self::Stretch => 2..3,
+        }
+    }
 }
 
 /// A coordinate of an end in the order `p (D), tangent (D − 1), curvature (D − 1), v, β`; or the turn of a
@@ -64,6 +77,8 @@ pub(super) const fn row_of(end: usize, order: usize) -> usize {
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Coordinate {
     Point(usize),
+    /// The motion along the `k`-th direction in which a joint slides, which the end does not know.
+    Along(usize),
     Tangent(usize),
     Curvature(usize),
     Turn,
@@ -87,6 +102,7 @@ impl<const D: usize> End<D> {
                 unit[d] = 1.0;
                 [unit, zero, zero]
             }
+            Coordinate::Along(_) => [zero; 3],
             Coordinate::Tangent(j) => {
                 let normal = self.frame[j + 1];
                 let bend = normal * self.stretch - tangent * (speed * speed * self.curvature[j]);

@@ -13,6 +13,8 @@ pub enum Part {
     Tangent,
     /// A curvature.
     Curvature,
+    /// The line or plane on which a position slides.
+    Guide,
 }
 
 impl Part {
@@ -22,6 +24,7 @@ impl Part {
             Self::Position => "position",
             Self::Tangent => "tangent",
             Self::Curvature => "curvature",
+            Self::Guide => "guide",
         }
     }
 }
@@ -39,19 +42,38 @@ pub enum OptionName {
     Dimension,
     /// `relative_decrease`
     RelativeDecrease,
+    /// `tension`
+    Tension,
+    /// `bending`
+    Bending,
+    /// `length`
+    Length,
+    /// `tolerance`
+    Tolerance,
+    /// The reference's `weight`
+    ReferenceWeight,
 }
 
 impl OptionName {
     /// The option's name and what it may be.
     const fn rule(self) -> &'static str {
         match self {
-            Self::Functional => "functional: must be MVC (0) or MEC (1)",
+            Self::Functional => {
+                "functional: must be MVC (0), MEC (1), scale-invariant MVC (2) or MEC (3), space MVC (4) or MEC (5)"
+            }
             Self::ElementsPerSpan => "elements_per_span: must be from 1 to 1024",
             Self::QuadraturePoints => "quadrature_points: must be from 12 to 32",
             Self::Dimension => {
                 "dimension: must be 0 (found from the data), 2 (the data must lie in a plane) or 3"
             }
             Self::RelativeDecrease => "relative_decrease: must be a number from 0 to below 1",
+            Self::Tension => "tension: must be a number from 0 up, and 0 with a scale-invariant functional",
+            Self::Bending => "bending: must be a number from 0 up, and 0 with a scale-invariant functional",
+            Self::Length => "length: must be 0 (free) or a positive number",
+            Self::Tolerance => "tolerance: must be 0 (as many elements as asked for) or a positive number",
+            Self::ReferenceWeight => {
+                "weight of the reference shape: must be a number from 0 to 1, for MVC alone"
+            }
         }
     }
 }
@@ -94,6 +116,25 @@ pub enum CurveError {
     ZeroTangent {
         /// The joint.
         joint: usize,
+    },
+    /// The line or plane on which a joint slides has no direction.
+    ZeroGuide {
+        /// The joint.
+        joint: usize,
+    },
+    /// The length that is asked for is not greater than that of the polygon of the fixed joints.
+    LengthTooShort,
+    /// A chain of elements, the reference shape or the start, has not as many as the curve.
+    WrongElementCount {
+        /// As many as the curve has.
+        needed: usize,
+        /// How many were given.
+        given: usize,
+    },
+    /// An element of the reference shape or of the start is not a number, or stands still at an end.
+    BadElement {
+        /// The element.
+        element: usize,
     },
     /// A given curvature vector is not perpendicular to the given tangent (by more than 1e-6 of its length).
     CurvatureNotPerpendicular {
@@ -156,6 +197,22 @@ impl fmt::Display for CurveError {
             }
             Self::ZeroTangent { joint } => {
                 write!(f, "the tangent of joint {joint} is the zero vector and has no direction")
+            }
+            Self::ZeroGuide { joint } => {
+                write!(f, "the line or plane on which joint {joint} slides has the zero vector as its direction")
+            }
+            Self::LengthTooShort => f.write_str(
+                "the length that was asked for is no greater than that of the polygon through the fixed joints",
+            ),
+            Self::WrongElementCount { needed, given } => {
+                write!(f, "the reference shape or the start needs {needed} elements; {given} given")
+            }
+            Self::BadElement { element } => {
+                write!(
+                    f,
+                    "element {element} of the reference shape or of the start has a number that is not finite, \
+                     or no direction at an end"
+                )
             }
             Self::CurvatureNotPerpendicular { joint } => {
                 write!(f, "the curvature of joint {joint} is not perpendicular to its tangent")

@@ -1,5 +1,7 @@
 //! Joints: what a designer gives, point by point (thesis 4.1 and 4.5).
 
+use super::element::Element;
+
 /// Whether a quantity is the solver's to choose.
 #[repr(transparent)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -12,6 +14,13 @@ impl Given {
     pub const INITIAL: Self = Self(1);
     /// Kept exactly.
     pub const FIXED: Self = Self(2);
+    /// Of a position: it slides on the line through the value along [`Joint::guide`]; the value is where it starts.
+    pub const ON_LINE: Self = Self(3);
+    /// Of a position: it slides in the plane through the value across [`Joint::guide`]; the value is where it starts.
+    pub const ON_PLANE: Self = Self(4);
+    /// Of a curvature: its size is kept, its direction is free. The value's direction is where it starts, if it does not
+    /// run along the tangent. A planar curve keeps the side to which it bends at the start.
+    pub const SIZE: Self = Self(5);
 }
 
 /// How the two elements at a joint meet.
@@ -51,6 +60,11 @@ impl Quantity {
     pub const fn fixed(value: [f64; 3]) -> Self {
         Self { given: Given::FIXED, value }
     }
+
+    /// A curvature vector of which only the size is kept.
+    pub const fn of_size(value: [f64; 3]) -> Self {
+        Self { given: Given::SIZE, value }
+    }
 }
 
 /// A joint: a point of the curve with what is known there.
@@ -74,6 +88,9 @@ pub struct Joint {
     pub tangent: [Quantity; 2],
     /// The curvature vector of the arriving and the leaving side.
     pub curvature: [Quantity; 2],
+    /// Where the position slides: the direction of its line, or the normal of its plane; of any length but zero. Not read
+    /// otherwise.
+    pub guide: [f64; 3],
 }
 
 impl Joint {
@@ -84,7 +101,18 @@ impl Joint {
             position: Quantity::fixed(point),
             tangent: [Quantity::FREE; 2],
             curvature: [Quantity::FREE; 2],
+            guide: [0.0; 3],
         }
+    }
+
+    /// The same joint sliding on a line, from `point` on.
+    pub const fn on_line(self, point: [f64; 3], direction: [f64; 3]) -> Self {
+        Self { position: Quantity { given: Given::ON_LINE, value: point }, guide: direction, ..self }
+    }
+
+    /// The same joint sliding in a plane, from `point` on.
+    pub const fn on_plane(self, point: [f64; 3], normal: [f64; 3]) -> Self {
+        Self { position: Quantity { given: Given::ON_PLANE, value: point }, guide: normal, ..self }
     }
 
     /// The same joint with another continuity.
@@ -117,9 +145,42 @@ pub struct Curve<'a> {
     pub joints: &'a [Joint],
     /// Whether the curve returns to its first joint.
     pub closed: bool,
+    /// A shape whose change of curvature is this curve's aim, if any.
+    pub reference: Option<Reference<'a>>,
 }
 
-impl Curve<'_> {
+/// A reference shape (thesis 4.6): the curve minimises `∫ |dκ/ds − α dκ₀/ds|² ds` with `κ₀` the reference's curvature
+/// vector at the same element and parameter.
+///
+/// So that the same parameter means the same place, the speed's relative change along an element is held to the reference's
+/// (by a term that is `α` times the functional's natural size; it is no part of the value that is reported).
+///
+/// With `α = 1` and the reference's own joints the curve is the reference; joints that move deform it. As `α` sinks to 0 the
+/// curve becomes the minimum variation curve: a smoothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference<'a> {
+    /// The reference: as many elements as the curve has.
+    pub elements: &'a [Element],
+    /// The weight `α`, 0 to 1.
+    pub weight: f64,
+}
+
+impl<'a> Curve<'a> {
+    /// A curve through joints, closed or not.
+    pub const fn new(joints: &'a [Joint], closed: bool) -> Self {
+        Self { joints, closed, reference: None }
+    }
+
+    /// An open curve.
+    pub const fn open(joints: &'a [Joint]) -> Self {
+        Self::new(joints, false)
+    }
+
+    /// The same curve with a reference shape.
+    pub const fn with_reference(self, reference: Reference<'a>) -> Self {
+        Self { reference: Some(reference), ..self }
+    }
+
     /// The number of spans: intervals between consecutive joints.
     pub const fn spans(&self) -> usize {
         if self.closed { self.joints.len() } else { self.joints.len().saturating_sub(1) }

@@ -17,7 +17,7 @@
 //!     Joint::at([-1.0, 0.0, 0.0]).with_tangent(Quantity::fixed([0.0, 1.0, 0.0])),
 //!     Joint::at([1.0, 0.0, 0.0]).with_tangent(Quantity::fixed([0.0, -1.0, 0.0])),
 //! ];
-//! let curve = Curve { joints: &joints, closed: false };
+//! let curve = Curve::open(&joints);
 //! let options = Options::DEFAULT;
 //!
 //! let mut workspace = [0.0; 512];
@@ -31,25 +31,31 @@
 //! # Ok::<(), minvar::curve::CurveError>(())
 //! ```
 
+mod accuracy;
 mod check;
 pub mod convert;
 mod element;
 mod end;
 mod error;
 pub(crate) mod fairness;
+pub(crate) mod functional;
 mod joint;
 pub mod measure;
 mod model;
+mod natural;
 mod options;
+mod passes;
 mod placement;
 mod rows;
 mod solve;
 mod start;
+#[cfg_attr(not(test), expect(dead_code, reason = "the space functionals are not offered yet"))]
+mod torsion;
 
 pub use element::Element;
 pub use error::{CurveError, OptionName, Part};
-pub use fairness::Functional;
-pub use joint::{Continuity, Curve, Given, Joint, Quantity};
+pub use functional::Functional;
+pub use joint::{Continuity, Curve, Given, Joint, Quantity, Reference};
 pub use measure::{CurvePoint, MeasureError};
 pub use options::Options;
-pub use solve::{Report, elements_len, solve, workspace_len};
+pub use solve::{Report, elements_len, solve, update, workspace_len};

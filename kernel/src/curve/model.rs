@@ -6,12 +6,14 @@
 //! of, and how it moves, [`super::end`] knows; what an element costs, [`super::rows`].
 
 use super::end::{Coordinate, End, SideStep, row_of, rows_between};
-use super::fairness::{Dimension, Exterior, Functional, density, evenness};
+use super::fairness::{Density, Shape};
+use super::functional::{Functional, Weights};
 use super::joint::{Continuity, Curve, Given, Joint};
-use super::rows::{derivatives, row_derivatives};
-use crate::basis::hermite;
-use crate::basis::quadrature::Rule;
-use crate::solve::{BlockList, Problem, packed};
+use super::placement::Placement;
+use super::rows::{Integrand, Mirrored, RowDerivatives};
+use crate::basis::lanes::Lanes;
+use crate::basis::mirrored::{pair_count, pairs};
+use crate::solve::{BlockList, Coupled, Problem, packed};
 use core::ops::Range;
 use nalgebra::SVector;
 
@@ -28,7 +30,7 @@ type Coordinates = heapless::Vec<(usize, Coordinate), MOST_LOCAL>;
 /// A node's or a side's freedoms.
 #[derive(Clone, Copy)]
 struct Freedom {
-    point: bool,
+    point: PointFreedom,
     tangent: bool,
     curvature: CurvatureFreedom,
 }
@@ -40,19 +42,50 @@ enum CurvatureFreedom {
     Free,
 }
 
+/// A length that the curve is to have: `multiplier (L − target) + ½ penalty (L − target)²` is added to the functional.
+#[derive(Clone, Copy)]
+pub(super) struct Goal {
+    pub(super) target: f64,
+    pub(super) multiplier: f64,
+    pub(super) penalty: f64,
+}
+
+/// Where the joints stand among the nodes.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Division<'a> {
+    /// So many elements a span.
+    Even(usize),
+    /// A number a node: that of its joint, from 1, or 0 for a node between joints.
+    Marked(&'a [f64]),
+}
+
+/// What of a point is free.
+#[derive(Clone, Copy, PartialEq)]
+enum PointFreedom {
+    Fixed,
+    Free,
+    Line,
+    Plane,
+}
+
 /// A curve in its local system.
 #[derive(Clone, Copy)]
 pub(super) struct Model<'a, const D: usize> {
     pub(super) curve: Curve<'a>,
-    pub(super) per_span: usize,
+    pub(super) place: Placement<D>,
+    pub(super) division: Division<'a>,
     pub(super) functional: Functional,
-    pub(super) rule: Rule,
+    pub(super) weights: Weights,
+    /// A length that is approached.
+    pub(super) goal: Option<Goal>,
+    /// Gauss–Lobatto points an element.
+    pub(super) points: usize,
     /// Weight of the evenness of the parametrisation.
     pub(super) gauge: f64,
     /// Whether a curve that turns by more than a right angle between two points of the rule is outside the domain:
     /// it would have a cusp there that the rule does not see.
     pub(super) guarded: bool,
-    /// See [`Problem::natural_cost`].
+    /// The natural size of the integral, see [`Problem::natural_cost`].
     pub(super) natural_cost: f64,
     /// Half the sum of all speeds at the start: about the curve's length.
     pub(super) start_length: f64,
@@ -60,7 +93,10 @@ pub(super) struct Model<'a, const D: usize> {
 
 impl<const D: usize> Model<'_, D> {
     pub(super) fn element_count(&self) -> usize {
-        self.curve.spans() * self.per_span
+        match self.division {
+            Division::Even(parts) => self.curve.spans() * parts,
+            Division::Marked(nodes) => nodes.len() - usize::from(!self.curve.closed),
+        }
     }
 
     pub(super) fn node_count(&self) -> usize {
@@ -75,7 +111,20 @@ impl<const D: usize> Model<'_, D> {
 
     /// The joint at a node, if there is one.
     pub(super) fn joint(&self, node: usize) -> Option<&Joint> {
-        if node.is_multiple_of(self.per_span) { self.curve.joints.get(node / self.per_span) } else { None }
+        self.curve.joints.get(self.joint_number(node)?)
+    }
+
+    /// The natural size of an element of this length: what each integral is on an arc that turns by one radian or so.
+    pub(super) fn natural_of(&self, length: f64) -> f64 {
+        let Weights { variation, bending, length: tension } = self.weights;
+        variation / (length * length * length) + bending / length + tension * length
+    }
+
+    fn joint_number(&self, node: usize) -> Option<usize> {
+        match self.division {
+            Division::Even(parts) => node.is_multiple_of(parts).then_some(node / parts),
+            Division::Marked(nodes) => nodes.get(node).and_then(|&mark| (mark as usize).checked_sub(1)),
+        }
     }
 
     fn node_start(node: usize) -> usize {
@@ -110,26 +159,50 @@ impl<const D: usize> Model<'_, D> {
     /// What is free at a side of a node; side 0 arrives, side 1 leaves.
     fn freedom(&self, node: usize, side: usize) -> Freedom {
         let Some(joint) = self.joint(node) else {
-            return Freedom { point: true, tangent: true, curvature: CurvatureFreedom::Free };
+            return Freedom { point: PointFreedom::Free, tangent: true, curvature: CurvatureFreedom::Free };
+        };
+        let point = match joint.position.given {
+            Given::FIXED => PointFreedom::Fixed,
+            Given::ON_LINE => PointFreedom::Line,
+            // A plane that holds the plane of a planar curve leaves it free.
+            Given::ON_PLANE if D == 3 => PointFreedom::Plane,
+            Given::ON_PLANE if self.place.slide(joint, 0).is_some() => PointFreedom::Line,
+            _ => PointFreedom::Free,
         };
         let tangent = joint.tangent[side].given != Given::FIXED;
         let fixed = &joint.curvature[side];
-        let curvature = if fixed.given != Given::FIXED {
+        let kept = fixed.given == Given::FIXED;
+        let curvature = if !kept && fixed.given != Given::SIZE {
             CurvatureFreedom::Free
-        } else if tangent && D == 3 && fixed.value != [0.0; 3] {
+        } else if (tangent || !kept) && D == 3 && fixed.value != [0.0; 3] {
             CurvatureFreedom::Turns
         } else {
             CurvatureFreedom::Fixed
         };
-        Freedom { point: joint.position.given != Given::FIXED, tangent, curvature }
+        Freedom { point, tangent, curvature }
+    }
+
+    /// Whether the elements at a node share its tangent, and its curvature.
+    pub(super) fn shares(&self, node: usize) -> (bool, bool) {
+        let continuity = self.continuity(node);
+        (continuity != Continuity::G0, continuity == Continuity::G2)
+    }
+
+    /// Whether the size of the curvature at a side of a node is free, and its tangent.
+    pub(super) fn bends_and_turns(&self, node: usize, side: usize) -> (bool, bool) {
+        let freedom = self.freedom(node, side);
+        (freedom.curvature == CurvatureFreedom::Free, freedom.tangent)
     }
 
     /// Calls `visit` with the coordinates that are unknowns of a node, in the order of its dofs.
     fn node_coordinates(&self, node: usize, mut visit: impl FnMut(Coordinate)) {
         let freedom = self.freedom(node, 0);
         let continuity = self.continuity(node);
-        if freedom.point {
-            (0..D).for_each(|d| visit(Coordinate::Point(d)));
+        match freedom.point {
+            PointFreedom::Fixed => {}
+            PointFreedom::Free => (0..D).for_each(|d| visit(Coordinate::Point(d))),
+            PointFreedom::Line => visit(Coordinate::Along(0)),
+            PointFreedom::Plane => (0..D - 1).for_each(|k| visit(Coordinate::Along(k))),
         }
         if continuity != Continuity::G0 && freedom.tangent {
             (0..D - 1).for_each(|j| visit(Coordinate::Tangent(j)));
@@ -229,30 +302,152 @@ impl<const D: usize> Model<'_, D> {
 
 impl<const D: usize> Model<'_, D>
 where
-    Dimension<D>: Exterior<D>,
+    Shape<D>: Density<D>,
 {
-    /// What an element costs by its rows; infinite outside the domain.
-    pub(super) fn cost_of_rows(&self, rows: &[SVector<f64, D>; 6]) -> f64 {
-        let mut sum = 0.0;
-        let mut before: Option<SVector<f64, D>> = None;
-        for (t, weight) in self.rule.iter() {
-            let d = derivatives(rows, &hermite::basis(t));
-            if self.guarded && before.is_some_and(|before| !(before.dot(&d[0]) > 0.0)) {
-                return f64::INFINITY;
+    fn integrand(&self, element: usize) -> Integrand<D> {
+        let reference = self.curve.reference.and_then(|reference| {
+            let rows = reference.elements.get(element)?.rows.map(|row| self.place.local_vector(&row));
+            Some((Mirrored::of(&rows), reference.weight))
+        });
+        Integrand { weights: self.weights, gauge: self.gauge, rule: pairs(self.points), reference }
+    }
+
+    /// What is summed when the two sums count by these weights.
+    fn combined(&self, element: usize, [own, length]: [f64; 2]) -> Integrand<D> {
+        let mut weights = self.weights.times(own);
+        weights.length += length;
+        Integrand { weights, gauge: self.gauge * own, ..self.integrand(element) }
+    }
+
+    /// The direction in which a node slides.
+    fn guide(&self, node: usize, k: usize) -> SVector<f64, D> {
+        self.joint(node).and_then(|joint| self.place.slide(joint, k)).unwrap_or_else(SVector::zeros)
+    }
+
+    /// Gradient and Hessian by some of an element's local unknowns from those by its rows; the length's gradient goes to
+    /// `second` as far as that reaches.
+    #[expect(clippy::too_many_arguments, reason = "an element, what is known of it, and three results")]
+    fn by_unknowns(
+        &self,
+        element: usize,
+        ends: &[End<D>; 2],
+        list: &Coordinates,
+        by_rows: &RowDerivatives<D>,
+        gradient: &mut [f64],
+        second: &mut [f64],
+        matrix: &mut [f64],
+    ) {
+        let mut maps = [[SVector::<f64, D>::zeros(); 3]; MOST_LOCAL];
+        // By the points at the two ends the chord's derivatives count, with opposite signs.
+        let sides = [-1.0, 1.0];
+        for (map, &(end, one)) in maps.iter_mut().zip(list) {
+            *map = match one {
+                Coordinate::Along(k) => {
+                    [self.guide(self.node(element, end), k), SVector::zeros(), SVector::zeros()]
+                }
+                _ => ends[end].tangent_map(one),
+            };
+            map[0] *= sides[end];
+        }
+        for (i, &(end, one)) in list.iter().enumerate() {
+            let map = &maps[i];
+            let mut slope = 0.0;
+            // The Hessian times this direction, by rows.
+            let mut along = [SVector::<f64, D>::zeros(); 5];
+            for order in one.orders() {
+                let (row, direction) = (row_of(end, order), &map[order]);
+                for d in 0..D {
+                    slope += direction[d] * by_rows.gradient[row][d];
+                    for a in 0..5 {
+                        for x in 0..D {
+                            along[a][x] += by_rows.hessian[a][row][x][d] * direction[d];
+                        }
+                    }
+                }
             }
-            before = Some(d[0]);
-            sum += weight * density(self.functional, &d);
-            if self.gauge > 0.0 {
-                sum += weight * self.gauge * evenness(&d);
+            gradient[i] = slope;
+            if let Some(second) = second.get_mut(i) {
+                for order in one.orders() {
+                    let length = SVector::from(by_rows.length_gradient[row_of(end, order)]);
+                    *second += map[order].dot(&length);
+                }
+            }
+            for (j, &(other_end, other)) in list.iter().enumerate().take(i + 1) {
+                let mut sum = 0.0;
+                for order in other.orders() {
+                    sum += maps[j][order].dot(&along[row_of(other_end, order)]);
+                }
+                if end == other_end {
+                    let [point, first, second] =
+                        [0, 1, 2].map(|order| SVector::<f64, D>::from(by_rows.gradient[row_of(end, order)]));
+                    sum += ends[end].second_map(one, other, &(point * sides[end]), &first, &second);
+                }
+                matrix[packed(i, j)] = sum;
             }
         }
-        sum
+    }
+
+    /// What an element costs by its rows, and its length; infinite outside the domain.
+    pub(super) fn sums_of_rows(&self, element: usize, rows: &[SVector<f64, D>; 6]) -> [f64; 2] {
+        let mut guard =
+            Guard { pairs: if self.guarded { pair_count(self.points) } else { 0 }, ..Guard::new() };
+        let sums = self.integrand(element).value(rows, |first| guard.pass(first));
+        if guard.ends_well() { sums } else { [f64::INFINITY; 2] }
+    }
+
+    /// What an element costs by its rows; infinite outside the domain.
+    pub(super) fn cost_of_rows(&self, element: usize, rows: &[SVector<f64, D>; 6]) -> f64 {
+        self.sums_of_rows(element, rows)[0]
+    }
+}
+
+/// Watches the direction of a curve from either end inwards: it must turn by less than a right angle from each point of
+/// the rule to the next.
+struct Guard<const D: usize> {
+    /// The pairs of points that are still to come.
+    pairs: usize,
+    last: Option<[[f64; D]; 2]>,
+    good: bool,
+}
+
+impl<const D: usize> Guard<D> {
+    const fn new() -> Self {
+        Self { pairs: 0, last: None, good: true }
+    }
+
+    #[inline]
+    fn forward(a: &[f64; D], b: &[f64; D]) -> bool {
+        let mut sum = 0.0;
+        for d in 0..D {
+            sum += a[d] * b[d];
+        }
+        sum > 0.0
+    }
+
+    #[inline]
+    fn pass(&mut self, first: &[[Lanes; D]; 2]) {
+        for lane in 0..crate::basis::lanes::WIDTH {
+            if self.pairs == 0 {
+                return;
+            }
+            self.pairs -= 1;
+            let here = first.map(|side| side.map(|x| x.0[lane]));
+            if let Some(last) = &self.last {
+                self.good &= Self::forward(&last[0], &here[0]) && Self::forward(&last[1], &here[1]);
+            }
+            self.last = Some(here);
+        }
+    }
+
+    /// The two innermost points are neighbours too.
+    fn ends_well(&self) -> bool {
+        self.good && self.last.is_none_or(|last| Self::forward(&last[0], &last[1]))
     }
 }
 
 impl<const D: usize> Problem for Model<'_, D>
 where
-    Dimension<D>: Exterior<D>,
+    Shape<D>: Density<D>,
 {
     fn blocks(&self) -> usize {
         self.node_count() + self.element_count()
@@ -296,7 +491,7 @@ where
     }
 
     fn envelope_bound(&self) -> usize {
-        // In a chain a row reaches back over one element and one node at most, in a ring over two of each.
+        // A row reaches back over one element and one node at most; in a ring the last node's reach back to the first.
         let (mut widest_node, mut widest_element, mut unknowns) = (0, 0, 0);
         for block in 0..self.blocks() {
             let dofs = self.dofs(block);
@@ -304,59 +499,115 @@ where
             let widest = if block < self.node_count() { &mut widest_node } else { &mut widest_element };
             *widest = dofs.max(*widest);
         }
-        let ways = if self.curve.closed { 2 } else { 1 };
-        let reach = ways * (widest_node + widest_element) + widest_node.max(widest_element);
-        unknowns * reach.min(unknowns)
+        let reach = widest_node + widest_element + widest_node.max(widest_element);
+        let across = if self.curve.closed { widest_node } else { 0 };
+        unknowns * (reach + across).min(unknowns)
+    }
+
+    fn block_at(&self, place: usize) -> Option<usize> {
+        let nodes = self.node_count();
+        Some(if self.curve.closed {
+            // Cut open at the first node, which comes last: its rows alone are long then.
+            let element = place / 2;
+            if place.is_multiple_of(2) { nodes + element } else { (element + 1) % nodes }
+        } else if place.is_multiple_of(2) {
+            place / 2
+        } else {
+            nodes + place / 2
+        })
     }
 
     fn cost(&self, element: usize, state: &[f64]) -> f64 {
+        self.sums(element, state)[0]
+    }
+
+    fn linearise(&self, element: usize, state: &[f64], gradient: &mut [f64], matrix: &mut [f64]) -> f64 {
+        self.linearise_sums(element, state, [1.0, 0.0], gradient, &mut [], matrix)[0]
+    }
+
+    fn is_coupled(&self) -> bool {
+        self.functional.length_power() != 0 || self.goal.is_some()
+    }
+
+    fn couple(&self, sums: [f64; 2]) -> Coupled {
+        let [own, length] = sums;
+        if let Some(Goal { target, multiplier, penalty }) = self.goal {
+            // At a given length the scale-invariant functionals are a constant times the plain ones.
+            let off = length - target;
+            return Coupled {
+                value: own + off * (multiplier + 0.5 * penalty * off),
+                first: [1.0, multiplier + penalty * off],
+                second: [[0.0, 0.0], [0.0, penalty]],
+            };
+        }
+        match self.functional.length_power() {
+            0 => Coupled::plain(sums),
+            1 => Coupled { value: own * length, first: [length, own], second: [[0.0, 1.0], [1.0, 0.0]] },
+            _ => {
+                let (square, mixed) = (length * length, 3.0 * length * length);
+                Coupled {
+                    value: own * square * length,
+                    first: [square * length, own * mixed],
+                    second: [[0.0, mixed], [mixed, 6.0 * own * length]],
+                }
+            }
+        }
+    }
+
+    fn sums(&self, element: usize, state: &[f64]) -> [f64; 2] {
         let ends = [self.end(element, 0, state), self.end(element, 1, state)];
         let chord = ends[1].point - ends[0].point;
         let least = LEAST_SPEED * libm::sqrt(chord.dot(&chord));
         if !ends.iter().all(|end| end.speed > least) {
-            return f64::INFINITY;
+            return [f64::INFINITY; 2];
         }
-        self.cost_of_rows(&self.rows(element, state))
+        self.sums_of_rows(element, &rows_between(&ends))
     }
 
-    fn linearise(&self, element: usize, state: &[f64], gradient: &mut [f64], matrix: &mut [f64]) -> f64 {
+    fn linearise_sums(
+        &self,
+        element: usize,
+        state: &[f64],
+        first: [f64; 2],
+        gradient: &mut [f64],
+        second: &mut [f64],
+        matrix: &mut [f64],
+    ) -> [f64; 2] {
         let ends = [self.end(element, 0, state), self.end(element, 1, state)];
-        let by_rows = row_derivatives(self.functional, self.gauge, &self.rule, &self.rows(element, state));
+        let by_rows = self.combined(element, first).derivatives(&rows_between(&ends));
         let list = self.local_coordinates(element);
-        let block = |a: usize, b: usize| {
-            if a >= b { by_rows.hessian[a][b] } else { by_rows.hessian[b][a].transpose() }
-        };
-        for (i, &(end, one)) in list.iter().enumerate() {
-            let map = ends[end].tangent_map(one);
-            let mut slope = 0.0;
-            for order in 0..3 {
-                slope += map[order].dot(&by_rows.gradient[row_of(end, order)]);
-            }
-            gradient[i] = slope;
-            // The Hessian times this direction, by rows.
-            let along: [SVector<f64, D>; 6] = core::array::from_fn(|a| {
-                let mut sum = SVector::zeros();
-                for order in 0..3 {
-                    sum += block(a, row_of(end, order)) * map[order];
-                }
-                sum
+        self.by_unknowns(element, &ends, &list, &by_rows, gradient, second, matrix);
+        let own = if first[1] == 0.0 { by_rows.cost } else { by_rows.cost - first[1] * by_rows.length };
+        [if first[0] == 1.0 { own } else { own / first[0] }, by_rows.length]
+    }
+
+    fn linearise_own(
+        &self,
+        element: usize,
+        state: &[f64],
+        first: [f64; 2],
+        gradient: &mut [f64],
+        matrix: &mut [f64],
+    ) -> Option<f64> {
+        let ends = [self.end(element, 0, state), self.end(element, 1, state)];
+        let by_rows = self.combined(element, first).derivatives(&rows_between(&ends));
+        // The ends of an open curve belong to one element too.
+        let mut list = Coordinates::new();
+        if !self.curve.closed && element == 0 {
+            self.node_coordinates(0, |coordinate| {
+                let _ = list.push((0, coordinate));
             });
-            for (j, &(other_end, other)) in list.iter().enumerate().take(i + 1) {
-                let other_map = ends[other_end].tangent_map(other);
-                let mut sum = 0.0;
-                for order in 0..3 {
-                    sum += other_map[order].dot(&along[row_of(other_end, order)]);
-                }
-                if end == other_end {
-                    let point = by_rows.gradient[row_of(end, 0)];
-                    let first = by_rows.gradient[row_of(end, 1)];
-                    let second = by_rows.gradient[row_of(end, 2)];
-                    sum += ends[end].second_map(one, other, &point, &first, &second);
-                }
-                matrix[packed(i, j)] = sum;
-            }
         }
-        by_rows.cost
+        self.element_coordinates(element, |end, coordinate| {
+            let _ = list.push((end, coordinate));
+        });
+        if !self.curve.closed && element + 1 == self.element_count() {
+            self.node_coordinates(element + 1, |coordinate| {
+                let _ = list.push((1, coordinate));
+            });
+        }
+        self.by_unknowns(element, &ends, &list, &by_rows, gradient, &mut [], matrix);
+        Some(by_rows.cost)
     }
 
     fn retract(&self, block: usize, from: &[f64], step: &[f64], to: &mut [f64]) {
@@ -373,6 +624,12 @@ where
                     let step = next();
                     point[d] += step;
                     slide += step * side[d];
+                }
+                Coordinate::Along(k) => {
+                    let (step, guide) = (next(), self.guide(block, k));
+                    for d in 0..D {
+                        point[d] += step * guide[d];
+                    }
                 }
                 _ => turn.note(coordinate, next()),
             });
@@ -400,7 +657,8 @@ where
     }
 
     fn variants(&self) -> usize {
-        if self.gauge > 0.0 || self.per_span > 3 { 0 } else { SKEWS.len() }
+        let few = matches!(self.division, Division::Even(1..=3));
+        if self.gauge == 0.0 && few { SKEWS.len() } else { 0 }
     }
 
     fn vary(&self, element: usize, variant: usize, state: &mut [f64]) {
@@ -422,7 +680,9 @@ where
         let mut put = |coordinate: Coordinate, length: f64| {
             if let Some(size) = sizes.next() {
                 *size = match coordinate {
-                    Coordinate::Point(_) | Coordinate::Speed | Coordinate::Stretch => length,
+                    Coordinate::Point(_) | Coordinate::Along(_) | Coordinate::Speed | Coordinate::Stretch => {
+                        length
+                    }
                     Coordinate::Tangent(_) | Coordinate::Turn => 1.0,
                     Coordinate::Curvature(_) => 1.0 / length,
                 };
@@ -447,7 +707,7 @@ where
     }
 
     fn natural_cost(&self) -> f64 {
-        self.natural_cost
+        self.couple([self.natural_cost, self.start_length]).value
     }
 
     fn runs_away(&self, state: &[f64]) -> bool {

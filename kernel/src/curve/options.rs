@@ -1,7 +1,7 @@
 //! How a curve is to be computed.
 
 use super::error::{CurveError, OptionName};
-use super::fairness::Functional;
+use super::functional::Functional;
 
 /// The options of a curve. [`Options::DEFAULT`] suits nearly all.
 #[repr(C)]
@@ -9,9 +9,20 @@ use super::fairness::Functional;
 pub struct Options {
     /// What is minimised. Default MVC.
     pub functional: Functional,
+    /// A weight times the length is added to the functional: a tension. In the functional's unit over a length, 0 or
+    /// more; 0 with a scale-invariant functional. Default 0.
+    pub tension: f64,
+    /// A weight times the bending energy `∫ κ² ds` is added to the functional. In the functional's unit times a length, 0
+    /// or more; 0 with a scale-invariant functional. Default 0.
+    pub bending: f64,
     /// Elements between two joints, 1 to 1024 (thesis 4.6). One is normally enough to be fair, more approach the
     /// true curve. Default 1.
     pub elements_per_span: u32,
+    /// The length of the curve; 0 leaves it free. Default 0.
+    pub length: f64,
+    /// How far the curve may be from the true minimum, a length: spans are divided further until an estimate is below it,
+    /// into at most `elements_per_span` elements each. 0 takes just `elements_per_span`. Default 0.
+    pub tolerance: f64,
     /// Gauss–Lobatto points an element, 12 to 32. Fewer than 20 can be cheated by an optimiser. Default 32.
     pub quadrature_points: u32,
     /// The largest number of iterations (trial steps). Default 500.
@@ -28,7 +39,11 @@ impl Options {
     /// The defaults named at each field.
     pub const DEFAULT: Self = Self {
         functional: Functional::MVC,
+        tension: 0.0,
+        bending: 0.0,
         elements_per_span: 1,
+        length: 0.0,
+        tolerance: 0.0,
         quadrature_points: 32,
         max_iterations: 500,
         dimension: 0,
@@ -40,6 +55,12 @@ impl Options {
         if !self.functional.is_known() {
             return bad(OptionName::Functional);
         }
+        let plain = self.functional.length_power() == 0;
+        for (weight, name) in [(self.tension, OptionName::Tension), (self.bending, OptionName::Bending)] {
+            if !(weight == 0.0 || (plain && weight > 0.0 && weight.is_finite())) {
+                return bad(name);
+            }
+        }
         if !(1..=1024).contains(&self.elements_per_span) {
             return bad(OptionName::ElementsPerSpan);
         }
@@ -48,6 +69,11 @@ impl Options {
         }
         if !matches!(self.dimension, 0 | 2 | 3) {
             return bad(OptionName::Dimension);
+        }
+        for (length, name) in [(self.length, OptionName::Length), (self.tolerance, OptionName::Tolerance)] {
+            if !(length >= 0.0 && length.is_finite()) {
+                return bad(name);
+            }
         }
         if !(0.0..1.0).contains(&self.relative_decrease) {
             return bad(OptionName::RelativeDecrease);

@@ -5,8 +5,9 @@
 //! costs none.
 
 use super::check::direction;
+use super::element::Element;
 use super::error::CurveError;
-use super::joint::{Curve, Given};
+use super::joint::{Curve, Given, Joint};
 use nalgebra::{SVector, Vector3};
 
 /// A local orthonormal system of `D` axes.
@@ -34,6 +35,54 @@ impl<const D: usize> Placement<D> {
     pub(super) fn local_curvature(&self, vector: &[f64; 3]) -> SVector<f64, D> {
         let vector = Vector3::from(*vector);
         SVector::from_fn(|d, _| self.axes[d].dot(&vector) * self.unit)
+    }
+
+    /// The size of a curvature vector.
+    pub(super) fn local_size(&self, value: &[f64; 3]) -> f64 {
+        let vector = Vector3::from(*value);
+        libm::sqrt(vector.dot(&vector)) * self.unit
+    }
+
+    /// A parametric derivative, or a point of which only differences count: the local origin does not enter.
+    pub(super) fn local_vector(&self, vector: &[f64; 3]) -> SVector<f64, D> {
+        let vector = Vector3::from(*vector);
+        SVector::from_fn(|d, _| self.axes[d].dot(&vector) / self.unit)
+    }
+
+    /// The rows of an element.
+    pub(super) fn local_rows(&self, element: &Element) -> [SVector<f64, D>; 6] {
+        let [p0, v0, a0, a1, v1, p1] = &element.rows;
+        let [v0, a0, a1, v1] = [v0, a0, a1, v1].map(|row| self.local_vector(row));
+        [self.local_point(p0), v0, a0, a1, v1, self.local_point(p1)]
+    }
+
+    /// The `k`-th direction, a unit vector, in which a joint slides; `None` where there is no such direction, or where a
+    /// joint in a plane that holds a planar curve is free.
+    pub(super) fn slide(&self, joint: &Joint, k: usize) -> Option<SVector<f64, D>> {
+        let guide = direction(&joint.guide)?;
+        let local = SVector::<f64, D>::from_fn(|d, _| self.axes[d].dot(&guide));
+        let size = libm::sqrt(local.dot(&local));
+        if joint.position.given == Given::ON_LINE {
+            return (k == 0 && size > 0.0).then(|| local / size);
+        }
+        if D == 2 {
+            // The line in which the joint's plane and the curve's meet.
+            if k > 0 || size < FLATNESS {
+                return None;
+            }
+            let mut along = local / size;
+            let first = along[0];
+            along[0] = -along[1];
+            along[1] = first;
+            return Some(along);
+        }
+        let least = (0..D).fold(0, |least, d| if guide[d].abs() < guide[least].abs() { d } else { least });
+        let mut across = Vector3::zeros();
+        across[least] = 1.0;
+        let first = guide.cross(&across);
+        let first = first / libm::sqrt(first.dot(&first));
+        let found = if k == 0 { first } else { guide.cross(&first) };
+        Some(SVector::from_fn(|d, _| self.axes[d].dot(&found)))
     }
 
     pub(super) fn world_point(&self, local: &SVector<f64, D>) -> [f64; 3] {
@@ -85,8 +134,13 @@ fn vectors(curve: &Curve<'_>, origin: &Vector3<f64>, mut visit: impl FnMut(Vecto
             let point = Vector3::from(joint.position.value);
             visit(point - origin, 4.0 * f64::EPSILON * (point.amax() + origin.amax()));
         }
+        if joint.position.given == Given::ON_LINE
+            && let Some(along) = direction(&joint.guide)
+        {
+            visit(along, 0.0);
+        }
         for quantity in joint.tangent.iter().chain(&joint.curvature) {
-            if quantity.given != Given::FREE
+            if !matches!(quantity.given, Given::FREE | Given::SIZE)
                 && let Some(towards) = direction(&quantity.value)
             {
                 visit(towards, 0.0);

@@ -1,21 +1,23 @@
 //! From a designer's data to elements: the three calls *how much*, *here it is*, *solve*.
 
-use super::check::check;
+use super::accuracy::{Aim, Level, divide};
+use super::check::{check, check_elements, check_length};
 use super::element::Element;
-use super::error::CurveError;
-use super::fairness::{Dimension, Exterior};
+use super::error::{CurveError, OptionName};
+use super::fairness::{Density, Shape};
+use super::functional::{Functional, Weights};
 use super::joint::{Curve, Given};
 use super::measure;
-use super::model::Model;
+use super::model::{Division, Goal, Model};
+use super::natural;
 use super::options::Options;
+use super::passes::Passes;
 use super::placement::{Place, Placement};
 use super::rows::derivatives;
-use super::start::{Start, refine};
+use super::start::{Start, adopt, refine};
 use crate::basis::hermite;
-use crate::basis::quadrature;
-use crate::solve::{
-    self, Control, InOrder, Observer, Outcome, Problem, Record, Settings, Status, WorkspaceTooSmall,
-};
+use crate::basis::quadrature::MAX_POINTS;
+use crate::solve::{self, Observer, Outcome, Problem, Record, Status, WorkspaceTooSmall};
 use nalgebra::SVector;
 
 /// How a curve came out. All figures in the caller's units.
@@ -31,6 +33,10 @@ pub struct Report {
     pub unknowns: usize,
     /// Whether the curve was computed in a plane.
     pub planar: bool,
+    /// How many elements the curve has: as many as [`elements_len`] says, or fewer with a tolerance.
+    pub elements: usize,
+    /// The estimated distance from the true minimum, where a tolerance was asked for; infinite where there is no estimate.
+    pub error: f64,
     /// The functional's value by the rule that was minimised with.
     pub value: f64,
     /// The functional's value of the resulting elements by a finer rule, 32 points on each half. Where it differs from
@@ -50,7 +56,7 @@ pub struct Report {
     pub decrement: f64,
 }
 
-/// The number of elements that a curve has: `spans × elements_per_span`.
+/// The number of elements that a curve has, or with a tolerance the most that it may have: `spans × elements_per_span`.
 pub const fn elements_len(curve: &Curve<'_>, options: &Options) -> usize {
     curve.spans().saturating_mul(options.elements_per_span as usize)
 }
@@ -62,20 +68,40 @@ pub const fn elements_len(curve: &Curve<'_>, options: &Options) -> usize {
 /// Everything that [`solve()`] would find wrong with the data and options, but for
 /// [`CurveError::CurvatureNeedsTangent`], which shows with the start values.
 pub fn workspace_len(curve: &Curve<'_>, options: &Options) -> Result<usize, CurveError> {
+    let unit = look_over(curve, options)?;
+    Ok(match Place::of(curve, unit, options.dimension)? {
+        Place::Plane(place) => Layout::of(&model(curve, options, &place), options).len(),
+        Place::Space(place) => Layout::of(&model(curve, options, &place), options).len(),
+    })
+}
+
+/// Everything that can be wrong with the data and options but for memory. Returns the unit of length.
+fn look_over(curve: &Curve<'_>, options: &Options) -> Result<f64, CurveError> {
     options.check()?;
     let unit = check(curve)?;
-    Ok(match Place::of(curve, unit, options.dimension)? {
-        Place::Plane(_) => lens(&model::<2>(curve, options)).1,
-        Place::Space(_) => lens(&model::<3>(curve, options)).1,
-    })
+    check_length(curve, options.length)?;
+    if let Some(reference) = &curve.reference {
+        let (needed, given) = (elements_len(curve, options), reference.elements.len());
+        let plain = options.functional == Functional::MVC && options.tolerance == 0.0;
+        if !(plain && (0.0..=1.0).contains(&reference.weight)) {
+            return Err(CurveError::BadOption(OptionName::ReferenceWeight));
+        }
+        if needed != given {
+            return Err(CurveError::WrongElementCount { needed, given });
+        }
+        check_elements(reference.elements)?;
+    }
+    Ok(unit)
 }
 
 /// Computes a curve (thesis chapter 4).
 ///
 /// `workspace` needs [`workspace_len`] numbers in any condition, `elements` receives [`elements_len`] elements in
-/// order along the curve; more room is left untouched. `records` receives one record an iteration as far as it
+/// order along the curve, or fewer with a tolerance; more room is left untouched. `records` receives one record an iteration as far as it
 /// reaches. Fixed positions and tangent directions are kept exactly; planar data give elements exactly in their
 /// plane where that is parallel to a coordinate plane, else to rounding.
+///
+/// With a reference shape the search starts from that shape.
 ///
 /// # Errors
 /// Whatever is wrong with data, options or memory, found before any work; `elements` is untouched then.
@@ -87,21 +113,63 @@ pub fn solve(
     records: &mut [Record],
     observer: &mut dyn Observer,
 ) -> Result<Report, CurveError> {
-    options.check()?;
-    let unit = check(curve)?;
+    begin(curve, options, workspace, elements, records, observer, false)
+}
+
+/// Computes a curve anew from its last solution: a *warm start* for data that changed a little, as when a joint is
+/// dragged.
+///
+/// As [`solve()`], but `elements` holds the last solution, [`elements_len`] elements, from which the search starts; what the
+/// joints fix is taken from the joints. The search ends in the minimum that belongs to the last solution, so that a
+/// curve does not jump while it is dragged. A tolerance is not looked at: the number of elements stays. If nothing is
+/// found, the status says so and the elements are the last shape.
+///
+/// # Errors
+/// As [`solve()`], [`CurveError::ElementsTooShort`] and [`CurveError::BadElement`].
+pub fn update(
+    curve: &Curve<'_>,
+    options: &Options,
+    workspace: &mut [f64],
+    elements: &mut [Element],
+    records: &mut [Record],
+    observer: &mut dyn Observer,
+) -> Result<Report, CurveError> {
+    begin(curve, &Options { tolerance: 0.0, ..*options }, workspace, elements, records, observer, true)
+}
+
+fn begin(
+    curve: &Curve<'_>,
+    options: &Options,
+    workspace: &mut [f64],
+    elements: &mut [Element],
+    records: &mut [Record],
+    observer: &mut dyn Observer,
+    warm: bool,
+) -> Result<Report, CurveError> {
+    let unit = look_over(curve, options)?;
     match Place::of(curve, unit, options.dimension)? {
-        Place::Plane(place) => run(curve, options, &place, workspace, elements, records, observer),
-        Place::Space(place) => run(curve, options, &place, workspace, elements, records, observer),
+        Place::Plane(place) => run(curve, options, &place, workspace, elements, records, observer, warm),
+        Place::Space(place) => run(curve, options, &place, workspace, elements, records, observer, warm),
     }
 }
 
-fn model<'a, const D: usize>(curve: &Curve<'a>, options: &Options) -> Model<'a, D> {
-    let points = options.quadrature_points as usize;
+fn model<'a, const D: usize>(curve: &Curve<'a>, options: &Options, place: &Placement<D>) -> Model<'a, D> {
+    // The functional is brought to the local unit as a whole: its terms scale with different powers of the length.
+    let square = place.unit * place.unit;
+    let own = if options.functional.bends() { Weights::BENDING } else { Weights::VARIATION };
+    let (bending, length) = if options.functional.bends() {
+        (options.bending, options.tension * square)
+    } else {
+        (options.bending * square, options.tension * square * square)
+    };
     Model {
         curve: *curve,
-        per_span: options.elements_per_span as usize,
+        place: *place,
+        division: Division::Even(options.elements_per_span as usize),
         functional: options.functional,
-        rule: quadrature::lobatto(points).unwrap_or(quadrature::FINEST),
+        points: options.quadrature_points as usize,
+        weights: Weights { bending: own.bending + bending, length, ..own },
+        goal: None,
         gauge: 0.0,
         guarded: true,
         natural_cost: 0.0,
@@ -109,15 +177,57 @@ fn model<'a, const D: usize>(curve: &Curve<'a>, options: &Options) -> Model<'a, 
     }
 }
 
-/// The lengths of the state and of the whole workspace.
-fn lens<const D: usize>(model: &Model<'_, D>) -> (usize, usize)
-where
-    Dimension<D>: Exterior<D>,
-{
-    let state = model.state_len();
-    (state, state + solve::workspace_len(model, 1))
+/// The memory of a curve, in `f64`s: one function that sizes it and carves it.
+struct Layout {
+    state: usize,
+    /// What a tolerance needs: nodes and spans.
+    division: [usize; 2],
+    work: usize,
 }
 
+impl Layout {
+    fn of<const D: usize>(model: &Model<'_, D>, options: &Options) -> Self
+    where
+        Shape<D>: Density<D>,
+    {
+        let spans = model.curve.spans();
+        // A given length couples all elements.
+        let goal = (options.length > 0.0).then_some(Goal { target: 1.0, multiplier: 0.0, penalty: 1.0 });
+        let model = &Model { goal, ..*model };
+        let natural = natural::memory_len(model.curve.joints.len(), spans, model.curve.closed);
+        Self {
+            state: model.state_len(),
+            division: if options.tolerance > 0.0 { [model.node_count(), spans] } else { [0; 2] },
+            work: solve::workspace_len(model, 1).max(natural),
+        }
+    }
+
+    /// State, next state, marks, next marks, counts, next counts, errors, work.
+    fn parts(&self) -> [usize; 8] {
+        let [nodes, spans] = self.division;
+        let next = if nodes > 0 { self.state } else { 0 };
+        [self.state, next, nodes, nodes, spans, spans, spans, self.work]
+    }
+
+    fn len(&self) -> usize {
+        self.parts().iter().sum()
+    }
+
+    fn carve<'w>(&self, memory: &'w mut [f64]) -> Result<[&'w mut [f64]; 8], CurveError> {
+        let (needed, given) = (self.len(), memory.len());
+        if given < needed {
+            return Err(CurveError::WorkspaceTooSmall { needed, given });
+        }
+        let mut rest = memory;
+        Ok(self.parts().map(|len| {
+            let (part, tail) = core::mem::take(&mut rest).split_at_mut(len);
+            rest = tail;
+            part
+        }))
+    }
+}
+
+#[expect(clippy::too_many_arguments, reason = "the caller's, and where the curve lies")]
 fn run<const D: usize>(
     curve: &Curve<'_>,
     options: &Options,
@@ -126,72 +236,138 @@ fn run<const D: usize>(
     elements: &mut [Element],
     records: &mut [Record],
     observer: &mut dyn Observer,
+    warm: bool,
 ) -> Result<Report, CurveError>
 where
-    Dimension<D>: Exterior<D>,
+    Shape<D>: Density<D>,
 {
-    let mut model = model::<D>(curve, options);
+    let mut model = model::<D>(curve, options, place);
     let count = model.element_count();
     let too_short = CurveError::ElementsTooShort { needed: count, given: elements.len() };
     let elements = elements.get_mut(..count).ok_or(too_short)?;
-    let (state_len, needed) = lens(&model);
+    let layout = Layout::of(&model, options);
     let given = workspace.len();
-    if given < needed {
-        return Err(CurveError::WorkspaceTooSmall { needed, given });
-    }
-    let (state, work) = workspace.split_at_mut(state_len);
+    let [state, next_state, marks, next_marks, counts, next_counts, errors, work] =
+        layout.carve(workspace)?;
+    let around = layout.len() - layout.work;
     let wrong =
-        |short: WorkspaceTooSmall| CurveError::WorkspaceTooSmall { needed: state_len + short.needed, given };
+        |short: WorkspaceTooSmall| CurveError::WorkspaceTooSmall { needed: around + short.needed, given };
     let scale = functional_scale(options, place.unit);
-    let mut passes = Passes {
-        observer,
-        records,
-        scale,
-        most: options.max_iterations as usize,
-        iterations: 0,
-        linearisations: 0,
-    };
+    let length = (options.length > 0.0).then(|| options.length / place.unit);
+    let mut passes = Passes::new(observer, records, scale, options.max_iterations as usize, length);
+    let decrease = options.relative_decrease;
+
+    let from = if warm { Some(&*elements) } else { curve.reference.map(|reference| reference.elements) };
+    if let Some(from) = from {
+        check_elements(from)?;
+        model.natural_cost = adopt(&model, place, from, state);
+        model.start_length = model.rough_length(state);
+        if warm {
+            natural::improve(&model, state, work);
+        }
+        if let Some(reference) = &curve.reference {
+            model.gauge = reference.weight * model.natural_cost / count as f64;
+        }
+        let mut outcome = passes.finish(&mut model, decrease, state, work).map_err(wrong)?;
+        if model.gauge > 0.0 {
+            model.gauge = 0.0;
+            outcome.value = (0..count).map(|element| model.cost(element, state)).sum();
+        }
+        return Ok(hand_over(&model, &outcome, &passes, state, elements, options));
+    }
 
     // One element a span first: its solution, cut into parts, is within some millionths of what more elements reach.
-    let mut coarse = Model { per_span: 1, ..model };
+    let mut coarse = Model { division: Division::Even(1), ..model };
     let coarse_state = &mut state[..coarse.state_len()];
-    coarse.natural_cost = Start { model: &coarse, place }.fill(coarse_state)?;
+    coarse.natural_cost = Start { model: &coarse, place, parts: 1 }.fill(coarse_state)?;
+    let improved = natural::improve(&coarse, coarse_state, work);
     coarse.start_length = coarse.rough_length(coarse_state);
-    let last = model.per_span == 1;
+    let parts = options.elements_per_span as usize;
     let tolerance =
-        if last { options.relative_decrease } else { COARSE_DECREASE.max(options.relative_decrease) };
-    let mut outcome = passes.shape_and_finish(&mut coarse, tolerance, coarse_state, work).map_err(wrong)?;
+        if parts == 1 || options.tolerance > 0.0 { decrease } else { COARSE_DECREASE.max(decrease) };
+    let mut outcome = if improved {
+        passes.finish(&mut coarse, tolerance, coarse_state, work)
+    } else {
+        passes.shape_and_finish(&mut coarse, tolerance, coarse_state, work)
+    }
+    .map_err(wrong)?;
     model.start_length = coarse.start_length;
     model.natural_cost = coarse.natural_cost;
-    if !last {
-        let stopped = matches!(outcome.status, Status::Cancelled | Status::IterationLimit);
-        let found = (stopped || outcome.status == Status::Converged)
-            && is_regular((0..coarse.element_count()).map(|element| coarse.rows(element, coarse_state)));
-        if found {
-            let kept = &mut work[..coarse_state.len()];
-            kept.copy_from_slice(coarse_state);
-            model.natural_cost = refine(&coarse, kept, &model, state);
-            if !stopped {
-                outcome = passes
-                    .minimise(&model, options.relative_decrease, RELAXATION, state, work)
-                    .map_err(wrong)?;
-            }
-        } else {
-            model.natural_cost = Start { model: &model, place }.fill(state)?;
-            outcome =
-                passes.shape_and_finish(&mut model, options.relative_decrease, state, work).map_err(wrong)?;
-        }
+    if parts == 1 {
+        return Ok(hand_over(&coarse, &outcome, &passes, coarse_state, elements, options));
     }
-    outcome.iterations = passes.iterations;
-    outcome.linearisations = passes.linearisations;
+    let stopped = matches!(outcome.status, Status::Cancelled | Status::IterationLimit);
+    let found = (stopped || outcome.status == Status::Converged)
+        && is_regular((0..coarse.element_count()).map(|element| coarse.rows(element, coarse_state)));
 
-    for (index, element) in elements.iter_mut().enumerate() {
-        *element = world_element(&model, place, index, state);
+    if options.tolerance > 0.0 {
+        let mut base = 1;
+        if !found && !stopped {
+            // Too few elements to have a minimum at all.
+            base = parts.min(LEAST_PARTS);
+            let mut divided = Model { division: Division::Even(base), ..model };
+            let divided_state = &mut state[..divided.state_len()];
+            divided.natural_cost = Start { model: &divided, place, parts: base }.fill(divided_state)?;
+            outcome = passes.shape_and_finish(&mut divided, decrease, divided_state, work).map_err(wrong)?;
+        }
+        counts.fill(base as f64);
+        let mut current = Level { counts, marks, state };
+        let mut next = Level { counts: next_counts, marks: next_marks, state: next_state };
+        current.mark(curve.closed);
+        let mut error = f64::INFINITY;
+        if outcome.status == Status::Converged {
+            let aim = Aim {
+                tolerance: options.tolerance / place.unit,
+                most_per_span: parts,
+                relative_decrease: decrease,
+            };
+            let divided = divide(&mut passes, &model, &aim, outcome, [&mut current, &mut next], errors, work)
+                .map_err(wrong)?;
+            (outcome, error) = (divided.outcome, divided.error);
+        }
+        let model = current.model(&model);
+        let mut report = hand_over(&model, &outcome, &passes, current.state, elements, options);
+        report.error = error * place.unit;
+        return Ok(report);
     }
-    let mut report = report(&model, place, &outcome, elements, options);
+
+    if found {
+        let kept = &mut work[..coarse_state.len()];
+        kept.copy_from_slice(coarse_state);
+        model.natural_cost = refine(&coarse, kept, |_| parts, &model, state);
+        if !stopped {
+            outcome = passes.finish(&mut model, decrease, state, work).map_err(wrong)?;
+        }
+    } else {
+        model.natural_cost = Start { model: &model, place, parts }.fill(state)?;
+        outcome = passes.shape_and_finish(&mut model, decrease, state, work).map_err(wrong)?;
+    }
+    Ok(hand_over(&model, &outcome, &passes, state, elements, options))
+}
+
+/// Writes the elements, and says what they are worth.
+fn hand_over<const D: usize>(
+    model: &Model<'_, D>,
+    outcome: &Outcome,
+    passes: &Passes<'_>,
+    state: &[f64],
+    elements: &mut [Element],
+    options: &Options,
+) -> Report
+where
+    Shape<D>: Density<D>,
+{
+    let count = model.element_count();
+    let elements = &mut elements[..count];
+    for (index, element) in elements.iter_mut().enumerate() {
+        *element = world_element(model, index, state);
+    }
+    let outcome =
+        Outcome { iterations: passes.iterations, linearisations: passes.linearisations, ..*outcome };
+    let mut report = report(model, &outcome, elements, options);
     if report.status == Status::Converged {
         let regular = is_regular((0..count).map(|element| model.rows(element, state)));
-        let natural = model.natural_cost * scale;
+        let natural = model.natural_cost() * functional_scale(options, model.place.unit);
         let trusted =
             (report.fine_value - report.value).abs() <= TRUSTED * (report.value + NOTHING * natural);
         if !(regular && trusted) {
@@ -200,7 +376,7 @@ where
             report.status = if grown { Status::Unbounded } else { Status::Stalled };
         }
     }
-    Ok(report)
+    report
 }
 
 /// Whether no element has a cusp or stops: its direction changes by less than a right angle, and its speed by less than
@@ -229,15 +405,17 @@ fn is_regular<const D: usize>(elements: impl Iterator<Item = [SVector<f64, D>; 6
 
 /// What a functional's value in the local system is multiplied by to be in the caller's.
 fn functional_scale(options: &Options, unit: f64) -> f64 {
-    if options.functional.scale_power() == 1 { 1.0 / unit } else { 1.0 / unit / unit / unit }
+    match options.functional.scale_power() {
+        0 => 1.0,
+        1 => 1.0 / unit,
+        _ => 1.0 / unit / unit / unit,
+    }
 }
 
-/// The first pass ends when a step promises to lower the functional by less than this fraction.
-const SHAPING_DECREASE: f64 = 1e-1;
-/// Steps of each element by itself between two of the whole curve.
-const RELAXATION: usize = 10;
 /// With one element a span on the way to more, a functional to this fraction is enough.
 const COARSE_DECREASE: f64 = 1e-7;
+/// Where one element a span has no minimum, a tolerance begins with so many.
+const LEAST_PARTS: usize = 4;
 /// How far a finer quadrature may be off, as a fraction of the functional.
 const TRUSTED: f64 = 1e-4;
 /// A functional below this part of what is natural for the size is nothing.
@@ -245,103 +423,12 @@ const NOTHING: f64 = 1e-9;
 /// A curve that is wrong, and grew by more than this from its start, was on its way to infinity.
 const SUSPECT_GROWTH: f64 = 10.0;
 
-/// Runs one minimisation after the other as one to the caller: iterations numbered through, values in the caller's
-/// units.
-struct Passes<'a> {
-    observer: &'a mut dyn Observer,
-    records: &'a mut [Record],
-    scale: f64,
-    /// The most iterations of all together.
-    most: usize,
-    iterations: usize,
-    linearisations: usize,
-}
-
-impl Passes<'_> {
-    /// Two passes. First the shape, with a parametrisation that is kept even: only the shape decides how far a step goes
-    /// then, and what is left to the second pass lies in the right one of many shallow valleys.
-    fn shape_and_finish<const D: usize>(
-        &mut self,
-        model: &mut Model<'_, D>,
-        relative_decrease: f64,
-        state: &mut [f64],
-        work: &mut [f64],
-    ) -> Result<Outcome, WorkspaceTooSmall>
-    where
-        Dimension<D>: Exterior<D>,
-    {
-        let count = model.element_count();
-        let total = |model: &Model<'_, D>, state: &[f64]| -> f64 {
-            (0..count).map(|element| model.cost(element, state)).sum()
-        };
-        let mut start_cost = total(model, state);
-        if !start_cost.is_finite() {
-            model.guarded = false;
-            start_cost = total(model, state);
-        }
-        let natural = if start_cost > 0.0 { model.natural_cost.min(start_cost) } else { model.natural_cost };
-        model.gauge = natural / count as f64;
-        let outcome = self.minimise(model, SHAPING_DECREASE, 0, state, work)?;
-        model.gauge = 0.0;
-        if matches!(outcome.status, Status::Cancelled | Status::Unbounded) {
-            return Ok(outcome);
-        }
-        self.minimise(model, relative_decrease, RELAXATION, state, work)
-    }
-
-    /// One pass, with what is left of the iterations.
-    fn minimise<const D: usize>(
-        &mut self,
-        model: &Model<'_, D>,
-        relative_decrease: f64,
-        relaxation: usize,
-        state: &mut [f64],
-        work: &mut [f64],
-    ) -> Result<Outcome, WorkspaceTooSmall>
-    where
-        Dimension<D>: Exterior<D>,
-    {
-        let settings = Settings {
-            max_iterations: self.most - self.iterations.min(self.most),
-            relative_decrease,
-            relaxation,
-            ..Settings::DEFAULT
-        };
-        let outcome = solve::minimise(model, &settings, &InOrder, state, work, &mut [], self)?;
-        self.iterations += outcome.iterations;
-        self.linearisations += outcome.linearisations;
-        Ok(outcome)
-    }
-}
-
-impl Observer for Passes<'_> {
-    fn iteration(&mut self, number: usize, record: &Record) -> Control {
-        let record = Record {
-            value: record.value * self.scale,
-            predicted: record.predicted * self.scale,
-            actual: record.actual * self.scale,
-            gradient: record.gradient * self.scale,
-            ..*record
-        };
-        let number = self.iterations + number;
-        if let Some(slot) = self.records.get_mut(number - 1) {
-            *slot = record;
-        }
-        self.observer.iteration(number, &record)
-    }
-}
-
 /// An element in the caller's system, fixed positions to the last bit.
-fn world_element<const D: usize>(
-    model: &Model<'_, D>,
-    place: &Placement<D>,
-    index: usize,
-    state: &[f64],
-) -> Element
+fn world_element<const D: usize>(model: &Model<'_, D>, index: usize, state: &[f64]) -> Element
 where
-    Dimension<D>: Exterior<D>,
+    Shape<D>: Density<D>,
 {
-    let local = model.rows(index, state);
+    let (place, local) = (&model.place, model.rows(index, state));
     let mut rows = [[0.0; 3]; 6];
     for (a, row) in rows.iter_mut().enumerate() {
         *row = if a == 0 || a == 5 { place.world_point(&local[a]) } else { place.world_vector(&local[a]) };
@@ -358,25 +445,46 @@ where
 
 fn report<const D: usize>(
     model: &Model<'_, D>,
-    place: &Placement<D>,
     outcome: &Outcome,
     elements: &[Element],
     options: &Options,
 ) -> Report
 where
-    Dimension<D>: Exterior<D>,
+    Shape<D>: Density<D>,
 {
-    let scale = functional_scale(options, place.unit);
+    let scale = functional_scale(options, model.place.unit);
     let (variation, bending) = (measure::variation(elements), measure::bending(elements));
+    let length = measure::length(elements);
+    let plain = if options.functional.bends() {
+        bending * (1.0 + options.bending)
+    } else {
+        variation + options.bending * bending
+    } + options.tension * length;
+    let fine_value = match options.functional.length_power() {
+        0 => plain,
+        1 => plain * length,
+        _ => plain * length * length * length,
+    };
+    // A reference is no property of the elements: its part is measured by the finest rule there is.
+    let fine_value = if model.curve.reference.is_some() {
+        let fine = Model { points: MAX_POINTS, guarded: false, gauge: 0.0, ..*model };
+        let value =
+            |element: usize| fine.sums_of_rows(element, &model.place.local_rows(&elements[element]))[0];
+        (0..elements.len()).map(value).sum::<f64>() * scale
+    } else {
+        fine_value
+    };
     Report {
         status: outcome.status,
         iterations: outcome.iterations,
         linearisations: outcome.linearisations,
         unknowns: (0..model.blocks()).map(|block| model.dofs(block)).sum(),
         planar: D == 2,
+        elements: elements.len(),
+        error: 0.0,
         value: outcome.value * scale,
-        fine_value: if options.functional.scale_power() == 1 { bending } else { variation },
-        length: measure::length(elements),
+        fine_value,
+        length,
         variation,
         bending,
         gradient: outcome.gradient / outcome.value.max(f64::MIN_POSITIVE),
@@ -417,15 +525,18 @@ mod tests {
             Joint::at([1.0, 0.4, 0.0]),
             Joint::at([1.5, -0.4, 0.0]),
         ];
-        let curve = Curve { joints: &joints, closed: false };
+        let curve = Curve::open(&joints);
         let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
-        let fine = model::<2>(&curve, &Options { elements_per_span: 3, ..Options::DEFAULT });
-        let coarse = Model { per_span: 1, ..fine };
+        let options = Options { elements_per_span: 3, ..Options::DEFAULT };
+        let fine = model::<2>(&curve, &options, &place);
+        let coarse = Model { division: Division::Even(1), ..fine };
         let (mut coarse_state, mut state) = ([0.0; 100], [0.0; 300]);
         assert!(
-            Start { model: &coarse, place: &place }.fill(&mut coarse_state[..coarse.state_len()]).is_ok()
+            Start { model: &coarse, place: &place, parts: 1 }
+                .fill(&mut coarse_state[..coarse.state_len()])
+                .is_ok()
         );
-        refine(&coarse, &coarse_state, &fine, &mut state[..fine.state_len()]);
+        refine(&coarse, &coarse_state, |_| 3, &fine, &mut state[..fine.state_len()]);
         let at = |rows: &[SVector<f64, 2>; 6], t: f64, order: usize| {
             let basis = hermite::basis(t);
             (0..6).fold(row(0.0, 0.0), |sum, a| sum + rows[a] * basis[order][a])

@@ -6,9 +6,10 @@
 //! their neighbour. Speeds and stretches are those of the quintic that fits a circular arc best; the thesis starts
 //! with the chord and 0, from where twice as many iterations are needed.
 
+use super::element::Element;
 use super::end::{End, orthonormalise, rows_between};
 use super::error::CurveError;
-use super::fairness::{Dimension, Exterior};
+use super::fairness::{Density, Shape};
 use super::joint::{Continuity, Given, Joint};
 use super::model::Model;
 use super::placement::Placement;
@@ -77,6 +78,8 @@ fn frame_of<const D: usize>(tangent: &SVector<f64, D>, curvature: &SVector<f64, 
 pub(super) struct Start<'m, 'a, const D: usize> {
     pub(super) model: &'m Model<'a, D>,
     pub(super) place: &'m Placement<D>,
+    /// Elements a span.
+    pub(super) parts: usize,
 }
 
 /// How a tangent gets its start value.
@@ -91,7 +94,7 @@ enum Rule {
 
 impl<const D: usize> Start<'_, '_, D>
 where
-    Dimension<D>: Exterior<D>,
+    Shape<D>: Density<D>,
 {
     fn joints(&self) -> &[Joint] {
         self.model.curve.joints
@@ -109,13 +112,13 @@ where
         }
     }
 
-    fn point_at(joint: usize, per_span: usize, state: &[f64]) -> SVector<f64, D> {
-        let at = Model::<D>::point_place(joint * per_span);
-        SVector::from_fn(|d, _| state[at + d])
+    fn point_place(&self, joint: usize) -> usize {
+        Model::<D>::point_place(joint * self.parts)
     }
 
     fn point(&self, joint: usize, state: &[f64]) -> SVector<f64, D> {
-        Self::point_at(joint, self.model.per_span, state)
+        let at = self.point_place(joint);
+        SVector::from_fn(|d, _| state[at + d])
     }
 
     /// The inverted steps `A`, `B` to the two neighbours.
@@ -157,10 +160,10 @@ where
 
     /// Positions: given ones, and free ones evenly between the given neighbours.
     fn points(&self, state: &mut [f64]) {
-        let (count, per_span) = (self.joints().len(), self.model.per_span);
+        let count = self.joints().len();
         let given = |joint: usize| self.joints()[joint].position.given != Given::FREE;
         let put = |state: &mut [f64], joint: usize, point: &SVector<f64, D>| {
-            let at = Model::<D>::point_place(joint * per_span);
+            let at = self.point_place(joint);
             state[at..at + D].copy_from_slice(point.as_slice());
         };
         for (joint, data) in self.joints().iter().enumerate() {
@@ -220,7 +223,7 @@ where
         };
         let found = found.unwrap_or_else(SVector::zeros);
         let curvature = &data.curvature[side];
-        if curvature.given != Given::FREE {
+        if matches!(curvature.given, Given::INITIAL | Given::FIXED) {
             // A given curvature without a tangent: the tangent is perpendicular to it, if that leaves anything.
             let across = self.place.local_curvature(&curvature.value);
             if let Some(across) = unit(&across) {
@@ -242,11 +245,30 @@ where
     ) -> SVector<f64, D> {
         let data = &self.joints()[joint];
         let given = &data.curvature[side];
-        if given.given != Given::FREE {
-            let vector = self.place.local_curvature(&given.value);
-            let size = libm::sqrt(vector.dot(&vector));
-            return unit(&(vector - tangent * vector.dot(tangent))).map_or(vector, |across| across * size);
+        if given.given == Given::FREE {
+            return self.free_curvature(joint, side, tangent, state);
         }
+        let vector = self.place.local_curvature(&given.value);
+        let across = unit(&(vector - tangent * vector.dot(tangent)));
+        if given.given != Given::SIZE {
+            let size = libm::sqrt(vector.dot(&vector));
+            return across.map_or(vector, |across| across * size);
+        }
+        // A value that runs along the tangent says nothing of the direction.
+        let size = self.place.local_size(&given.value);
+        let towards = across.or_else(|| unit(&self.free_curvature(joint, side, tangent, state)));
+        towards.unwrap_or_else(|| perpendicular(tangent)) * size
+    }
+
+    /// The curvature at a joint where none is given.
+    fn free_curvature(
+        &self,
+        joint: usize,
+        side: usize,
+        tangent: &SVector<f64, D>,
+        state: &[f64],
+    ) -> SVector<f64, D> {
+        let data = &self.joints()[joint];
         if data.continuity == Continuity::G2
             && let Some([along, curvature]) = self.circle(joint, state)
         {
@@ -294,24 +316,22 @@ where
         let chord = ends[1].point - ends[0].point;
         let size = libm::sqrt(chord.dot(&chord));
         let angle = |t: &SVector<f64, D>| {
-            let wedge = Dimension::<D>::wedge(&chord, t);
-            let across = libm::sqrt(wedge[0] * wedge[0] + wedge[1] * wedge[1] + wedge[2] * wedge[2]);
-            libm::atan2(across, chord.dot(t))
+            let along = chord.dot(t);
+            let across = chord - t * along;
+            libm::atan2(libm::sqrt(across.dot(&across)), along)
         };
         let turn = (angle(&ends[0].frame[0]) + angle(&ends[1].frame[0])).min(MOST_TURN);
         let half = 0.5 * turn;
         let length = if half > 1e-4 { size * half / libm::sin(half) } else { size };
-        let speed = length * (1.0 + SPEED_BY_TURN * turn * turn);
-        let stretch = STRETCH_BY_TURN * turn * turn;
         let mut best = (f64::INFINITY, 1.0);
         for factor in SPEED_FACTORS {
-            give_speeds(ends, speed * factor, stretch);
-            let cost = self.model.cost_of_rows(&rows_between(ends));
+            give_speeds(ends, length * factor, turn);
+            let cost = self.model.cost_of_rows(usize::MAX, &rows_between(ends));
             if cost < 0.5 * best.0 {
                 best = (cost, factor);
             }
         }
-        give_speeds(ends, speed * best.1, stretch);
+        give_speeds(ends, length * best.1, turn);
     }
 
     /// The first joint at which a curvature is given but the start tangent runs along it: then nothing tells to which side
@@ -320,8 +340,8 @@ where
         (0..self.joints().len()).find(|&joint| {
             (0..2).any(|side| {
                 let data = &self.joints()[joint];
-                let given =
-                    data.curvature[side].given != Given::FREE && data.tangent[side].given == Given::FREE;
+                let given = matches!(data.curvature[side].given, Given::INITIAL | Given::FIXED)
+                    && data.tangent[side].given == Given::FREE;
                 given
                     && self.neighbour(joint, side).or(self.neighbour(joint, 1 - side)).is_some()
                     && unit(&self.place.local_curvature(&data.curvature[side].value))
@@ -345,71 +365,135 @@ where
         for span in 0..spans {
             let mut ends = [self.end(span, 1, state), self.end((span + 1) % count, 0, state)];
             self.set_speeds(&mut ends);
-            natural += subdivide(self.model, span, &ends, state);
+            natural += subdivide(self.model, span * self.parts, self.parts, &ends, state);
         }
         Ok(natural)
     }
 }
 
-/// Fills the state of a model from that of the same curve with one element a span, whose elements are cut into equal
-/// parts of their parameter. Returns the natural cost.
+/// Fills the state of a model from that of the same curve with fewer elements, each of which is cut into equal parts of its
+/// parameter: as many as `parts` says. Returns the natural cost.
 pub(super) fn refine<const D: usize>(
     coarse: &Model<'_, D>,
     coarse_state: &[f64],
+    mut parts: impl FnMut(usize) -> usize,
     fine: &Model<'_, D>,
     state: &mut [f64],
 ) -> f64
 where
-    Dimension<D>: Exterior<D>,
+    Shape<D>: Density<D>,
 {
     state.fill(0.0);
-    let mut natural = 0.0;
-    for span in 0..fine.curve.spans() {
-        let ends = [coarse.end(span, 0, coarse_state), coarse.end(span, 1, coarse_state)];
-        natural += subdivide(fine, span, &ends, state);
+    let (mut natural, mut first) = (0.0, 0);
+    for element in 0..coarse.element_count() {
+        let ends = [coarse.end(element, 0, coarse_state), coarse.end(element, 1, coarse_state)];
+        let count = parts(element);
+        natural += subdivide(fine, first, count, &ends, state);
+        first += count;
     }
     natural
 }
 
-/// Writes the elements of a span, equal parts of the quintic between two ends. Returns their natural cost, the sum of
-/// `1/length^power`.
-fn subdivide<const D: usize>(model: &Model<'_, D>, span: usize, ends: &[End<D>; 2], state: &mut [f64]) -> f64
+/// Writes `parts` elements from `first` on: equal parts of the quintic between two ends. Returns their natural cost.
+fn subdivide<const D: usize>(
+    model: &Model<'_, D>,
+    first: usize,
+    parts: usize,
+    ends: &[End<D>; 2],
+    state: &mut [f64],
+) -> f64
 where
-    Dimension<D>: Exterior<D>,
+    Shape<D>: Density<D>,
 {
     let rows = rows_between(ends);
-    let parts = model.per_span as f64;
+    let count = parts as f64;
     let [mut before, last] =
-        ends.map(|end| End { speed: end.speed / parts, stretch: end.stretch / (parts * parts), ..end });
+        ends.map(|end| End { speed: end.speed / count, stretch: end.stretch / (count * count), ..end });
     let mut natural = 0.0;
-    for part in 0..model.per_span {
-        let element = span * model.per_span + part;
-        let after = if part + 1 == model.per_span {
-            last
-        } else {
-            cut(&rows, (part + 1) as f64 / parts, parts, &before)
-        };
-        model.set_end(element, 0, &before, state);
-        model.set_end(element, 1, &after, state);
-        let length = 0.5 * (before.speed + after.speed);
-        natural += match model.functional.scale_power() {
-            1 => 1.0 / length,
-            _ => 1.0 / (length * length * length),
-        };
+    for part in 0..parts {
+        let after =
+            if part + 1 == parts { last } else { cut(&rows, (part + 1) as f64 / count, count, &before) };
+        model.set_end(first + part, 0, &before, state);
+        model.set_end(first + part, 1, &after, state);
+        natural += model.natural_of(0.5 * (before.speed + after.speed));
         before = after;
     }
     natural
 }
 
-/// The end that a span's start curve has at an interior parameter, for elements that are `1/parts` of it.
-fn cut<const D: usize>(rows: &[SVector<f64, D>; 6], t: f64, parts: f64, before: &End<D>) -> End<D>
+/// Fills the state from elements, a chain of as many as the model has: the end of each element's first end and the start
+/// of the next are taken from the next. What is fixed at the joints overrides. Returns the natural cost.
+pub(super) fn adopt<const D: usize>(
+    model: &Model<'_, D>,
+    place: &Placement<D>,
+    elements: &[Element],
+    state: &mut [f64],
+) -> f64
 where
-    Dimension<D>: Exterior<D>,
+    Shape<D>: Density<D>,
 {
-    let basis = hermite::basis(t);
-    let [point, first, second] = [0, 1, 2].map(|order: usize| combine(rows, &basis[order]));
-    let speed = libm::sqrt(first.dot(&first));
-    let tangent = unit(&first).unwrap_or(before.frame[0]);
+    state.fill(0.0);
+    let mut natural = 0.0;
+    for (index, element) in elements.iter().enumerate() {
+        let r = &element.rows;
+        let mut ends = [[0, 1, 2], [5, 4, 3]].map(|[point, first, second]: [usize; 3]| {
+            let (first, second) = (place.local_vector(&r[first]), place.local_vector(&r[second]));
+            end_of(&place.local_point(&r[point]), &first, &second, None)
+        });
+        let old_chord = ends[1].point - ends[0].point;
+        for (side, end) in ends.iter_mut().enumerate() {
+            let Some(joint) = model.joint(model.node(index, side)) else { continue };
+            let side = 1 - side;
+            if !matches!(joint.position.given, Given::FREE | Given::INITIAL) {
+                end.point = place.local_point(&joint.position.value);
+            }
+            let mut curvature = end.curvature_vector();
+            if joint.tangent[side].given == Given::FIXED {
+                let tangent = place.local_direction(&joint.tangent[side].value);
+                curvature = carry(&curvature, &end.frame[0], &tangent);
+                end.frame[0] = tangent;
+            }
+            let given = &joint.curvature[side];
+            if matches!(given.given, Given::FIXED | Given::SIZE) {
+                let wanted = place.local_curvature(&given.value);
+                let towards = if given.given == Given::SIZE { curvature } else { wanted };
+                let towards = unit(&(towards - end.frame[0] * towards.dot(&end.frame[0])));
+                let towards = towards.unwrap_or_else(|| perpendicular(&end.frame[0]));
+                curvature = towards * place.local_size(&given.value);
+            }
+            // At a G1 joint both sides share the frame: it must not depend on the side's curvature.
+            let shared = joint.continuity == Continuity::G1;
+            end.frame = frame_of(&end.frame[0], &if shared { SVector::zeros() } else { curvature });
+            for j in 1..D {
+                end.curvature[j - 1] = end.frame[j].dot(&curvature);
+            }
+        }
+        // An element whose joints moved apart is run through as much faster.
+        let chord = ends[1].point - ends[0].point;
+        let grown = libm::sqrt(chord.dot(&chord) / old_chord.dot(&old_chord));
+        if grown.is_finite() && grown > 0.0 {
+            for end in &mut ends {
+                end.speed *= grown;
+                end.stretch *= grown;
+            }
+        }
+        for (side, end) in ends.iter().enumerate() {
+            model.set_end(index, side, end, state);
+        }
+        natural += model.natural_of(0.5 * (ends[0].speed + ends[1].speed));
+    }
+    natural
+}
+
+/// The end with a point and derivatives. Without a direction of its own it takes that of `before`.
+fn end_of<const D: usize>(
+    point: &SVector<f64, D>,
+    first: &SVector<f64, D>,
+    second: &SVector<f64, D>,
+    before: Option<&End<D>>,
+) -> End<D> {
+    let speed = libm::sqrt(first.dot(first));
+    let tangent = unit(first).or(before.map(|end| end.frame[0])).unwrap_or_else(SVector::zeros);
     let along = second.dot(&tangent);
     let curvature = (second - tangent * along) / (speed * speed).max(f64::MIN_POSITIVE);
     let frame = frame_of(&tangent, &curvature);
@@ -417,12 +501,23 @@ where
     for j in 1..D {
         components[j - 1] = frame[j].dot(&curvature);
     }
-    End { point, frame, curvature: components, speed: speed / parts, stretch: along / (parts * parts) }
+    End { point: *point, frame, curvature: components, speed, stretch: along }
 }
 
-fn give_speeds<const D: usize>(ends: &mut [End<D>; 2], speed: f64, stretch: f64) {
+/// The end that a span's start curve has at an interior parameter, for elements that are `1/parts` of it.
+fn cut<const D: usize>(rows: &[SVector<f64, D>; 6], t: f64, parts: f64, before: &End<D>) -> End<D> {
+    let basis = hermite::basis(t);
+    let [point, first, second] = [0, 1, 2].map(|order: usize| combine(rows, &basis[order]));
+    let end = end_of(&point, &first, &second, Some(before));
+    End { speed: end.speed / parts, stretch: end.stretch / (parts * parts), ..end }
+}
+
+/// Gives a span of this length and turning the speeds and the stretches of the quintic that fits an arc best.
+pub(super) fn give_speeds<const D: usize>(ends: &mut [End<D>; 2], length: f64, turn: f64) {
+    let square = turn * turn;
+    let speed = length * (1.0 + SPEED_BY_TURN * square);
     for (end, sign) in ends.iter_mut().zip([-1.0, 1.0]) {
         end.speed = speed;
-        end.stretch = sign * stretch * speed;
+        end.stretch = sign * STRETCH_BY_TURN * square * speed;
     }
 }

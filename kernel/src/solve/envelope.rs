@@ -6,17 +6,17 @@
 use super::workspace::Indices;
 
 /// The shape of an envelope: where each row starts and at which column.
-pub(super) struct Envelope<'a, 'w> {
-    pub(super) first: &'a Indices<'w>,
-    pub(super) start: &'a Indices<'w>,
+pub(crate) struct Envelope<'a, 'w> {
+    pub(crate) first: &'a Indices<'w>,
+    pub(crate) start: &'a Indices<'w>,
 }
 
 /// Where a factorisation stopped: the matrix is not positive definite.
-pub(super) struct Indefinite {
+pub(crate) struct Indefinite {
     /// The row whose pivot is not positive.
-    pub(super) row: usize,
+    pub(crate) row: usize,
     /// That pivot, 0 or negative, or not a number.
-    pub(super) pivot: f64,
+    pub(crate) pivot: f64,
 }
 
 /// How well a pivot is known, as a fraction of its matrix entry.
@@ -27,7 +27,7 @@ const NORM_ROUNDING: f64 = 1e-16;
 const IMMOVABLE: f64 = 1e100;
 
 impl Envelope<'_, '_> {
-    pub(super) fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.first.len()
     }
 
@@ -40,13 +40,13 @@ impl Envelope<'_, '_> {
 
     /// Adds to the entry in row `r`, column `c`, `c <= r`.
     #[inline]
-    pub(super) fn add(&self, matrix: &mut [f64], r: usize, c: usize, value: f64) {
+    pub(crate) fn add(&self, matrix: &mut [f64], r: usize, c: usize, value: f64) {
         let at = self.start.get(r) + c - self.first.get(r);
         matrix[at] += value;
     }
 
     /// The largest absolute row sum: a bound on the matrix's eigenvalues (Gershgorin). `sums` is scratch.
-    pub(super) fn norm(&self, matrix: &[f64], sums: &mut [f64]) -> f64 {
+    pub(crate) fn norm(&self, matrix: &[f64], sums: &mut [f64]) -> f64 {
         sums.fill(0.0);
         for r in 0..self.rows() {
             let (first, range) = self.row(r);
@@ -63,7 +63,7 @@ impl Envelope<'_, '_> {
     }
 
     /// The product `out = matrix · vector`.
-    pub(super) fn multiply(&self, matrix: &[f64], vector: &[f64], out: &mut [f64]) {
+    pub(crate) fn multiply(&self, matrix: &[f64], vector: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         for r in 0..self.rows() {
             let (first, range) = self.row(r);
@@ -83,7 +83,7 @@ impl Envelope<'_, '_> {
     /// A pivot that is nothing but rounding, by what was subtracted to get it and by `norm`, the size of the whole
     /// matrix, belongs to a direction in which nothing changes (the parametrisation of a straight span, a motion of
     /// the whole shape). It is made so large that a solution has no part along it.
-    pub(super) fn factor(
+    pub(crate) fn factor(
         &self,
         matrix: &[f64],
         norm: f64,
@@ -118,7 +118,7 @@ impl Envelope<'_, '_> {
     }
 
     /// Solves `L y = x` in place.
-    pub(super) fn forward(&self, factor: &[f64], x: &mut [f64]) {
+    pub(crate) fn forward(&self, factor: &[f64], x: &mut [f64]) {
         for r in 0..self.rows() {
             let (first, range) = self.row(r);
             let row = &factor[range];
@@ -128,7 +128,7 @@ impl Envelope<'_, '_> {
     }
 
     /// Solves `Lᵀ y = x` in place, over the first `rows` rows.
-    pub(super) fn backward(&self, factor: &[f64], x: &mut [f64], rows: usize) {
+    pub(crate) fn backward(&self, factor: &[f64], x: &mut [f64], rows: usize) {
         for r in (0..rows).rev() {
             let (first, range) = self.row(r);
             let row = &factor[range];
@@ -142,7 +142,7 @@ impl Envelope<'_, '_> {
 
     /// A direction of negative curvature of the matrix whose factorisation stopped: solves `L₁₁ᵀ v = −l` for the
     /// rows before the bad pivot; `vᵀ (matrix + shift) v` is the pivot.
-    pub(super) fn negative_direction(&self, factor: &[f64], failure: &Indefinite, v: &mut [f64]) {
+    pub(crate) fn negative_direction(&self, factor: &[f64], failure: &Indefinite, v: &mut [f64]) {
         v.fill(0.0);
         let (first, range) = self.row(failure.row);
         for (c, entry) in (first..failure.row).zip(&factor[range]) {
@@ -155,7 +155,7 @@ impl Envelope<'_, '_> {
 
 /// The inner product, summed in order.
 #[inline]
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sum = 0.0;
     for (x, y) in a.iter().zip(b) {
         sum += x * y;

@@ -3,7 +3,8 @@
 use super::envelope::Envelope;
 use super::executor::Executor;
 use super::ordering::order_blocks;
-use super::problem::{BlockList, Problem, packed, packed_len};
+use super::problem::{BlockList, Coupled, Problem, packed, packed_len};
+use super::rank_two::RankTwo;
 use super::relax;
 use super::report::{Control, Observer, Outcome, Record, Status};
 use super::trust_region::{self, Radius, Vectors};
@@ -21,14 +22,21 @@ pub struct Settings {
     /// How many steps each element may take in the blocks that it shares with none, after every step of the whole; 0
     /// for none.
     pub relaxation: usize,
+    /// Whether other starts of those blocks are tried before the first step too, not only at the end.
+    pub explore_first: bool,
     /// The first radius of the trust region, in natural sizes an element.
     pub first_radius: f64,
 }
 
 impl Settings {
     /// 200 iterations, to rounding.
-    pub const DEFAULT: Self =
-        Self { max_iterations: 200, relative_decrease: 0.0, relaxation: 0, first_radius: 1.0 };
+    pub const DEFAULT: Self = Self {
+        max_iterations: 200,
+        relative_decrease: 0.0,
+        relaxation: 0,
+        explore_first: false,
+        first_radius: 1.0,
+    };
 }
 
 impl Default for Settings {
@@ -69,13 +77,19 @@ pub fn minimise<P: Problem + ?Sized>(
     if entries > layout.envelope {
         return Err(WorkspaceTooSmall { needed: layout.len() + 2 * (entries - layout.envelope), given });
     }
-    let mut run = Run { problem, executor, work, relaxation: settings.relaxation, linearisations: 0 };
+    let coupled = Coupled::plain([f64::INFINITY; 2]);
+    let mut run =
+        Run { problem, executor, work, relaxation: settings.relaxation, linearisations: 0, coupled };
     Ok(run.iterate(settings, state, records, observer))
 }
 
 /// Steps that are taken after the tolerance was met while Newton's method converges quadratically: they cost little and
 /// bring the gradient down to rounding.
 const POLISH: usize = 2;
+/// Below this part of what can be told by costs a step is not worth taking.
+const POLISH_FLOOR: f64 = 1e-6;
+/// Looser tolerances than this want no polish.
+const LOOSE: f64 = 1e-9;
 /// Converged as well when this many iterations together lowered the functional by less than so many tolerances.
 const WINDOW: usize = 20;
 const WINDOW_DECREASE: f64 = 1e3;
@@ -84,6 +98,8 @@ const ZERO_COST: f64 = 1e-3;
 /// A cost below this part of what is natural is rounding: no step can be judged any more.
 pub(super) const NO_COST: f64 = 1e-20;
 
+/// Before the first step elements are relaxed until one promises less than this fraction of its share.
+const START_ENOUGH: f64 = 1e-9;
 /// How often other starts of the elements' own unknowns may lead to a better minimum.
 const MOST_EXPLORATIONS: usize = 3;
 /// How many steps every element takes from each of its starts.
@@ -126,6 +142,8 @@ struct Run<'a, P: ?Sized> {
     work: Workspace<'a>,
     relaxation: usize,
     linearisations: usize,
+    /// The objective at the state last linearised.
+    coupled: Coupled,
 }
 
 impl<P: Problem + ?Sized> Run<'_, P> {
@@ -138,9 +156,22 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     ) -> Outcome {
         let natural = self.problem.natural_cost();
         let explores = self.relaxation > 0 && self.problem.variants() > 0;
-        if explores {
-            self.linearisations += relax::explore(self.problem, &mut self.work, EXPLORATION, state);
-            state.copy_from_slice(self.work.best);
+        self.work.trial.copy_from_slice(state);
+        self.coupled = self.cost();
+        if self.relaxation > 0 {
+            let first = self.coupled.first;
+            let enough = START_ENOUGH * self.coupled.value / self.problem.elements().max(1) as f64;
+            if explores && settings.explore_first {
+                self.linearisations +=
+                    relax::explore(self.problem, &mut self.work, EXPLORATION, first, state);
+                state.copy_from_slice(self.work.best);
+                self.work.trial.copy_from_slice(state);
+            } else {
+                self.linearisations +=
+                    relax::relax(self.problem, &mut self.work, self.relaxation, first, enough);
+                state.copy_from_slice(self.work.trial);
+            }
+            self.coupled = self.cost();
         }
         let mut value = self.linearise(state);
         let mut outcome = Outcome {
@@ -158,8 +189,10 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         let mut radius = Radius(settings.first_radius * root);
         let least_radius = 1e-9 * root;
         let mut shift = 0.0;
-        let mut polish = POLISH;
-        let mut explorations = if explores { MOST_EXPLORATIONS } else { 0 };
+        let tight = settings.relative_decrease <= LOOSE;
+        let most_polish = if tight { POLISH } else { 0 };
+        let mut polish = most_polish;
+        let mut explorations = if explores && tight { MOST_EXPLORATIONS } else { 0 };
         let mut past = [f64::INFINITY; WINDOW];
         loop {
             let gradient = self.work.gradient.iter().fold(0.0f64, |most, g| most.max(g.abs()));
@@ -175,10 +208,16 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                     step,
                     scratch,
                     direction,
+                    sum_gradients: [first, second],
+                    solved: [one, other],
                     ..
                 } = &mut self.work;
                 let envelope = Envelope { first: row_first, start: row_start };
-                let mut vectors = Vectors { gradient, step, scratch, direction, factor };
+                let coupling = self
+                    .problem
+                    .is_coupled()
+                    .then(|| RankTwo::new([first, second], self.coupled.second, [one, other]));
+                let mut vectors = Vectors { gradient, step, scratch, direction, factor, coupling };
                 trust_region::solve(&envelope, matrix, &mut vectors, radius.0, shift)
             };
             let Some(step) = step else {
@@ -195,18 +234,19 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             let little = settings.relative_decrease * (value + ZERO_COST * natural);
             let near = step.predicted <= if step.shift == 0.0 { floor.max(little) } else { floor };
             if near {
-                if step.predicted <= floor || polish == 0 {
+                if step.predicted <= POLISH_FLOOR * floor || polish == 0 || step.shift > 0.0 {
                     // A ball that shrank to nothing proves nothing; otherwise there is nothing left to gain.
                     let whole = step.shift == 0.0 || radius.0 > 1e3 * least_radius;
                     if whole && explorations > 0 && self.hop(state, value) {
                         explorations -= 1;
-                        polish = POLISH;
+                        polish = most_polish;
                         radius = Radius(settings.first_radius * root);
                         shift = 0.0;
                         value = self.linearise(state);
                         continue;
                     }
                     outcome.status = if whole { Status::Converged } else { Status::Stalled };
+                    outcome.linearisations = self.linearisations;
                     return outcome;
                 }
                 polish -= 1;
@@ -225,13 +265,13 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             shift = step.shift;
 
             let tried = self.try_step(state, 1e-3 * step.predicted / self.problem.elements() as f64);
-            let actual = value - tried;
+            let actual = value - tried.value;
             let slack = if step.predicted <= 1e3 * floor { floor } else { 0.0 };
-            let ratio = tried.is_finite().then(|| (actual + slack) / (step.predicted + slack));
+            let ratio = tried.value.is_finite().then(|| (actual + slack) / (step.predicted + slack));
             let accepted = radius.judge(ratio, step.length);
             outcome.iterations += 1;
             let record = Record {
-                value: if accepted { tried } else { value },
+                value: if accepted { tried.value } else { value },
                 predicted: step.predicted,
                 actual,
                 gradient,
@@ -244,6 +284,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             let control = observer.iteration(outcome.iterations, &record);
             if accepted {
                 state.copy_from_slice(self.work.trial);
+                self.coupled = tried;
                 value = self.linearise(state);
                 outcome.value = value;
             }
@@ -265,57 +306,73 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     /// Looks for better minima of the elements' own unknowns beside the present ones; moves there if that lowers the
     /// cost.
     fn hop(&mut self, state: &mut [f64], value: f64) -> bool {
-        self.linearisations += relax::explore(self.problem, &mut self.work, EXPLORATION, state);
+        let first = self.coupled.first;
+        self.linearisations += relax::explore(self.problem, &mut self.work, EXPLORATION, first, state);
         let Workspace { trial, best, .. } = &mut self.work;
         trial.copy_from_slice(best);
-        let better = self.cost() < value * (1.0 - relax::BETTER);
+        let found = self.cost();
+        let better = found.value < value * (1.0 - relax::BETTER);
         if better {
             state.copy_from_slice(self.work.best);
+            self.coupled = found;
         }
         better
     }
 
-    /// Takes the step into the trial state and relaxes it there; returns the cost.
-    fn try_step(&mut self, state: &[f64], enough: f64) -> f64 {
+    /// Takes the step into the trial state and relaxes it there; returns the objective.
+    fn try_step(&mut self, state: &[f64], enough: f64) -> Coupled {
         let Workspace { trial, step, sizes, offset, scratch, .. } = &mut self.work;
         move_by(self.problem, offset, sizes, step, scratch, state, trial);
         if self.relaxation > 0 {
-            self.linearisations += relax::relax(self.problem, &mut self.work, self.relaxation, enough);
+            self.linearisations +=
+                relax::relax(self.problem, &mut self.work, self.relaxation, self.coupled.first, enough);
         }
         self.cost()
     }
 
-    /// The cost of the trial state; infinite outside the domain.
-    fn cost(&mut self) -> f64 {
+    /// The objective at the trial state; infinite outside the domain.
+    fn cost(&mut self) -> Coupled {
         let (problem, elements, width) =
             (self.problem, self.problem.elements(), self.executor.width().max(1));
         let Workspace { trial, slots, .. } = &mut self.work;
         let trial = &**trial;
-        let mut sum = 0.0;
-        let mut first = 0;
-        while first < elements {
-            let count = width.min(elements - first);
-            let slots = &mut slots[..count];
-            self.executor.run(slots, 1, &|index, slot| {
-                slot.fill(problem.cost(first + index, trial));
+        let mut sums = [0.0; 2];
+        let mut at = 0;
+        while at < elements {
+            let count = width.min(elements - at);
+            let slots = &mut slots[..2 * count];
+            self.executor.run(slots, 2, &|index, slot| {
+                slot.copy_from_slice(&problem.sums(at + index, trial));
             });
-            for &cost in slots.iter() {
-                if !cost.is_finite() {
-                    return f64::INFINITY;
+            for slot in slots.chunks_exact(2) {
+                if !(slot[0].is_finite() && slot[1].is_finite()) {
+                    return Coupled::plain([f64::INFINITY; 2]);
                 }
-                sum += cost;
+                sums[0] += slot[0];
+                sums[1] += slot[1];
             }
-            first += count;
+            at += count;
         }
-        sum
+        problem.couple(sums)
     }
 
     /// Assembles gradient and Hessian at a state, scaled by natural sizes; returns the cost.
     fn linearise(&mut self, state: &[f64]) -> f64 {
         let (problem, elements, width) =
             (self.problem, self.problem.elements(), self.executor.width().max(1));
-        let Workspace { row_first, row_start, matrix, gradient, sizes, offset, slots, slot_len, .. } =
-            &mut self.work;
+        let Workspace {
+            row_first,
+            row_start,
+            matrix,
+            gradient,
+            sizes,
+            offset,
+            slots,
+            slot_len,
+            sum_gradients: [first_gradient, second_gradient],
+            ..
+        } = &mut self.work;
+        let (coupled, first) = (problem.is_coupled(), self.coupled.first);
         let envelope = Envelope { first: row_first, start: row_start };
         for block in 0..problem.blocks() {
             let (from, dofs) = (offset.get(block), problem.dofs(block));
@@ -326,28 +383,37 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         gradient.fill(0.0);
         matrix.fill(0.0);
         self.linearisations += elements;
-        let mut sum = 0.0;
-        let mut first = 0;
-        while first < elements {
-            let count = width.min(elements - first);
+        second_gradient.fill(0.0);
+        let mut sums = [0.0; 2];
+        let mut at = 0;
+        while at < elements {
+            let count = width.min(elements - at);
             let slots = &mut slots[..count * *slot_len];
             self.executor.run(slots, *slot_len, &|index, slot| {
-                let (_, local) = local_unknowns(problem, first + index);
+                let (_, local) = local_unknowns(problem, at + index);
                 slot.fill(0.0);
-                let (cost, rest) = slot.split_at_mut(1);
-                let (gradient, matrix) = rest.split_at_mut(local);
-                cost[0] = problem.linearise(first + index, state, gradient, &mut matrix[..packed_len(local)]);
+                let (own, rest) = slot.split_at_mut(2);
+                let (gradient, rest) = rest.split_at_mut(local);
+                let (second, rest) = rest.split_at_mut(if coupled { local } else { 0 });
+                let matrix = &mut rest[..packed_len(local)];
+                let sums = problem.linearise_sums(at + index, state, first, gradient, second, matrix);
+                own.copy_from_slice(&sums);
             });
             for (index, slot) in slots.chunks_exact(*slot_len).enumerate() {
-                let (list, local) = local_unknowns(problem, first + index);
-                let (cost, rest) = slot.split_at(1);
-                let (local_gradient, local_matrix) = rest.split_at(local);
-                sum += cost[0];
+                let (list, local) = local_unknowns(problem, at + index);
+                let (own, rest) = slot.split_at(2);
+                let (local_gradient, rest) = rest.split_at(local);
+                let (local_second, local_matrix) = rest.split_at(if coupled { local } else { 0 });
+                sums[0] += own[0];
+                sums[1] += own[1];
                 let mut i = 0;
                 for &row_block in &list {
                     let row_from = offset.get(row_block);
                     for row in row_from..row_from + problem.dofs(row_block) {
                         gradient[row] += local_gradient[i] * sizes[row];
+                        if coupled {
+                            second_gradient[row] += local_second[i] * sizes[row];
+                        }
                         let mut j = 0;
                         'columns: for &column_block in &list {
                             let column_from = offset.get(column_block);
@@ -364,8 +430,13 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                     }
                 }
             }
-            first += count;
+            at += count;
         }
-        sum
+        for (own, (all, second)) in first_gradient.iter_mut().zip(gradient.iter().zip(second_gradient.iter()))
+        {
+            *own = (all - first[1] * second) / first[0];
+        }
+        self.coupled = problem.couple(sums);
+        self.coupled.value
     }
 }

@@ -107,18 +107,32 @@ fn forget(level: &mut Indices<'_>, order: &Indices<'_>, from: usize, to: usize) 
 pub(super) fn order_blocks<P: Problem + ?Sized>(problem: &P, work: &mut Workspace<'_>) -> usize {
     let blocks = problem.blocks();
     build_incidence(problem, work);
+    let known = problem.block_at(0).is_some();
     let Workspace { order, offset, starts, incident, degree, level, row_first, row_start, .. } = work;
     let graph = Graph { problem, starts, incident };
 
     level.fill(UNSEEN);
-    for block in 0..blocks {
+    let mut ordered = 0;
+    if known {
+        for place in 0..blocks {
+            let block = problem.block_at(place).unwrap_or(place);
+            if problem.dofs(block) > 0 {
+                level.set(block, 0);
+                order.set(ordered, block);
+                ordered += 1;
+            }
+        }
+    }
+    for block in 0..if known { 0 } else { blocks } {
         let mut count = 0;
         graph.neighbours(block, |_| count += 1);
         degree.set(block, count);
     }
 
-    let mut ordered = 0;
     loop {
+        if known {
+            break;
+        }
         let root = (0..blocks)
             .filter(|&block| level.get(block) == UNSEEN && problem.dofs(block) > 0)
             .min_by_key(|&block| (degree.get(block), block));

@@ -19,6 +19,24 @@ pub const fn packed_len(n: usize) -> usize {
     n * (n + 1) / 2
 }
 
+/// How the objective follows from two sums over the elements, with its first and second derivatives by them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coupled {
+    /// The objective.
+    pub value: f64,
+    /// Its derivatives by the first and the second sum.
+    pub first: [f64; 2],
+    /// Its second derivatives, symmetric.
+    pub second: [[f64; 2]; 2],
+}
+
+impl Coupled {
+    /// The first sum alone: what a problem that is not coupled minimises.
+    pub const fn plain(sums: [f64; 2]) -> Self {
+        Self { value: sums[0], first: [1.0, 0.0], second: [[0.0; 2]; 2] }
+    }
+}
+
 /// A sum of elements to be minimised over blocks of unknowns that live on manifolds.
 ///
 /// The *state* is one slice of numbers in which every block owns a range, in whatever redundant form suits it (a
@@ -66,6 +84,59 @@ pub trait Problem: Sync {
     /// The matrix is the exact Hessian of the cost along [`Problem::retract`], or a positive semidefinite part
     /// of it where residuals are small. Both slices come filled with zeros and have exactly the element's size.
     fn linearise(&self, element: usize, state: &[f64], gradient: &mut [f64], matrix: &mut [f64]) -> f64;
+
+    /// Whether the objective couples all elements through a second sum, as a product with the length does. If so, the
+    /// four methods below that speak of sums must be given too.
+    fn is_coupled(&self) -> bool {
+        false
+    }
+
+    /// The objective from the two sums. The matrix of all elements together is then the sparse one that
+    /// [`Problem::linearise_sums`] gives plus one of rank two, which the solver treats exactly.
+    fn couple(&self, sums: [f64; 2]) -> Coupled {
+        Coupled::plain(sums)
+    }
+
+    /// What an element adds to the two sums.
+    fn sums(&self, element: usize, state: &[f64]) -> [f64; 2] {
+        [self.cost(element, state), 0.0]
+    }
+
+    /// As [`Problem::linearise`] for the combination `first[0] · sum 0 + first[1] · sum 1`; the gradient of sum 1 by
+    /// itself goes to `second`, which has the gradient's length where the problem is coupled and is empty where not.
+    fn linearise_sums(
+        &self,
+        element: usize,
+        state: &[f64],
+        first: [f64; 2],
+        gradient: &mut [f64],
+        second: &mut [f64],
+        matrix: &mut [f64],
+    ) -> [f64; 2] {
+        let _ = (first, second);
+        [self.linearise(element, state, gradient, matrix), 0.0]
+    }
+
+    /// As [`Problem::linearise_sums`] by those unknowns alone that the element shares with no other, in their order;
+    /// returns the combination's value. `None` where the problem has no faster way than leaving out the rest.
+    fn linearise_own(
+        &self,
+        element: usize,
+        state: &[f64],
+        first: [f64; 2],
+        gradient: &mut [f64],
+        matrix: &mut [f64],
+    ) -> Option<f64> {
+        let _ = (element, state, first, gradient, matrix);
+        None
+    }
+
+    /// The block at a place of a known good order, in which neighbours stand near each other; `None` lets the solver find
+    /// one. Either for all places or for none.
+    fn block_at(&self, place: usize) -> Option<usize> {
+        let _ = place;
+        None
+    }
 
     /// Moves a block from `from` by `step` in its tangent space. `from` and `to` are the block's own ranges.
     fn retract(&self, block: usize, from: &[f64], step: &[f64], to: &mut [f64]);

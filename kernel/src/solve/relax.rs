@@ -20,10 +20,11 @@ pub(super) fn relax<P: Problem + ?Sized>(
     problem: &P,
     work: &mut Workspace<'_>,
     steps: usize,
+    weights: [f64; 2],
     enough: f64,
 ) -> usize {
     work.spare.copy_from_slice(work.trial);
-    (0..problem.elements()).map(|element| relax_element(problem, work, element, steps, enough)).sum()
+    (0..problem.elements()).map(|element| relax_element(problem, work, element, steps, weights, enough)).sum()
 }
 
 /// Relaxes every element of a state from each of its starts, and keeps the best for each in `work.best`. Returns how
@@ -32,22 +33,23 @@ pub(super) fn explore<P: Problem + ?Sized>(
     problem: &P,
     work: &mut Workspace<'_>,
     steps: usize,
+    weights: [f64; 2],
     state: &[f64],
 ) -> usize {
     work.trial.copy_from_slice(state);
-    let mut linearisations = relax(problem, work, steps, 0.0);
+    let mut linearisations = relax(problem, work, steps, weights, 0.0);
     work.best.copy_from_slice(work.trial);
     for variant in 0..problem.variants() {
         work.trial.copy_from_slice(state);
         for element in 0..problem.elements() {
             problem.vary(element, variant, work.trial);
         }
-        linearisations += relax(problem, work, steps, 0.0);
+        linearisations += relax(problem, work, steps, weights, 0.0);
         for element in 0..problem.elements() {
             // Elements share none of what was changed: each is chosen by itself.
-            let best = problem.cost(element, work.best);
+            let best = weigh(problem.sums(element, work.best), weights);
             let least_gain = BETTER * best + NO_COST * problem.natural_cost();
-            if problem.cost(element, work.trial) < best - least_gain {
+            if weigh(problem.sums(element, work.trial), weights) < best - least_gain {
                 let mut list = BlockList::new();
                 problem.element_blocks(element, &mut list);
                 for &block in list.iter().filter(|&&block| is_private(&work.starts, block)) {
@@ -63,6 +65,11 @@ pub(super) fn explore<P: Problem + ?Sized>(
 /// By how much, relatively, another start must be better to be preferred: rounding must not choose.
 pub(super) const BETTER: f64 = 1e-9;
 
+/// An element's share of the objective, to first order in its sums.
+fn weigh(sums: [f64; 2], weights: [f64; 2]) -> f64 {
+    if weights[1] == 0.0 { sums[0] * weights[0] } else { sums[0] * weights[0] + sums[1] * weights[1] }
+}
+
 /// Whether a block belongs to one element alone.
 fn is_private(starts: &Indices<'_>, block: usize) -> bool {
     starts.get(block + 1) - starts.get(block) == 1
@@ -73,8 +80,10 @@ fn relax_element<P: Problem + ?Sized>(
     work: &mut Workspace<'_>,
     element: usize,
     steps: usize,
+    weights: [f64; 2],
     enough: f64,
 ) -> usize {
+    let coupled = problem.is_coupled();
     let Workspace { starts, trial, spare, slots, local_first, local_start, local, .. } = work;
     let mut list = BlockList::new();
     problem.element_blocks(element, &mut list);
@@ -97,7 +106,8 @@ fn relax_element<P: Problem + ?Sized>(
     let (scratch, rest) = rest.split_at_mut(own);
     let (sizes, rest) = rest.split_at_mut(own);
     let direction = &mut rest[..own];
-    let (all_gradient, all_matrix) = slots.split_at_mut(size);
+    let (all_gradient, rest) = slots.split_at_mut(size);
+    let (all_second, all_matrix) = rest.split_at_mut(if coupled { size } else { 0 });
     let all_matrix = &mut all_matrix[..packed_len(size)];
 
     let mut radius = Radius(FIRST_RADIUS);
@@ -107,13 +117,6 @@ fn relax_element<P: Problem + ?Sized>(
     let mut value = f64::INFINITY;
     for _ in 0..steps {
         if moved {
-            all_gradient.fill(0.0);
-            all_matrix.fill(0.0);
-            value = problem.linearise(element, trial, all_gradient, all_matrix);
-            linearisations += 1;
-            if !value.is_finite() {
-                break;
-            }
             let mut at = 0;
             for &block in &list {
                 if private(block) {
@@ -122,32 +125,52 @@ fn relax_element<P: Problem + ?Sized>(
                     at += dofs;
                 }
             }
-            // The rows and columns of the private unknowns, scaled.
-            let (mut row, mut i) = (0, 0);
-            for &block in &list {
-                for _ in 0..problem.dofs(block) {
-                    if private(block) {
-                        gradient[row] = all_gradient[i] * sizes[row];
-                        let (mut column, mut j) = (0, 0);
-                        for &other in &list {
-                            for _ in 0..problem.dofs(other) {
-                                if private(other) {
-                                    if j <= i {
-                                        matrix[packed(row, column)] =
-                                            all_matrix[packed(i, j)] * sizes[row] * sizes[column];
-                                    }
-                                    column += 1;
-                                }
-                                j += 1;
-                            }
-                        }
-                        row += 1;
+            if let Some(found) = problem.linearise_own(element, trial, weights, gradient, matrix) {
+                value = found;
+                for row in 0..own {
+                    gradient[row] *= sizes[row];
+                    for column in 0..=row {
+                        matrix[packed(row, column)] *= sizes[row] * sizes[column];
                     }
-                    i += 1;
+                }
+            } else {
+                all_gradient.fill(0.0);
+                all_second.fill(0.0);
+                all_matrix.fill(0.0);
+                let sums =
+                    problem.linearise_sums(element, trial, weights, all_gradient, all_second, all_matrix);
+                value = weigh(sums, weights);
+                // The rows and columns of the private unknowns, scaled.
+                let (mut row, mut i) = (0, 0);
+                for &block in &list {
+                    for _ in 0..problem.dofs(block) {
+                        if private(block) {
+                            gradient[row] = all_gradient[i] * sizes[row];
+                            let (mut column, mut j) = (0, 0);
+                            for &other in &list {
+                                for _ in 0..problem.dofs(other) {
+                                    if private(other) {
+                                        if j <= i {
+                                            matrix[packed(row, column)] =
+                                                all_matrix[packed(i, j)] * sizes[row] * sizes[column];
+                                        }
+                                        column += 1;
+                                    }
+                                    j += 1;
+                                }
+                            }
+                            row += 1;
+                        }
+                        i += 1;
+                    }
                 }
             }
+            linearisations += 1;
+            if !value.is_finite() {
+                break;
+            }
         }
-        let mut vectors = Vectors { gradient, step, scratch, direction, factor };
+        let mut vectors = Vectors { gradient, step, scratch, direction, factor, coupling: None };
         let Some(found) = trust_region::solve(&envelope, matrix, &mut vectors, radius.0, shift) else {
             break;
         };
@@ -166,7 +189,7 @@ fn relax_element<P: Problem + ?Sized>(
                 at += dofs;
             }
         }
-        let tried = problem.cost(element, spare);
+        let tried = weigh(problem.sums(element, spare), weights);
         let ratio = tried.is_finite().then(|| (value - tried) / found.predicted);
         let accepted = radius.judge(ratio, found.length);
         for &block in list.iter().filter(|&&block| private(block)) {

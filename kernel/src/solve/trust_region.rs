@@ -5,6 +5,7 @@
 //! found by Newton's method on `1/radius − 1/|s|`, safeguarded by bounds.
 
 use super::envelope::{Envelope, dot};
+use super::rank_two::RankTwo;
 
 /// The radius of a trust region, and how it learns from steps.
 #[derive(Clone, Copy, Debug)]
@@ -51,6 +52,43 @@ pub(super) struct Vectors<'a> {
     pub(super) scratch: &'a mut [f64],
     pub(super) direction: &'a mut [f64],
     pub(super) factor: &'a mut [f64],
+    /// What is added to the sparse matrix.
+    pub(super) coupling: Option<RankTwo<'a>>,
+}
+
+impl Vectors<'_> {
+    /// The Newton step of the factored matrix.
+    fn newton(&mut self, envelope: &Envelope<'_, '_>) {
+        for (s, g) in self.step.iter_mut().zip(self.gradient.iter()) {
+            *s = -g;
+        }
+        envelope.forward(self.factor, self.step);
+        envelope.backward(self.factor, self.step, envelope.rows());
+        if let Some(coupling) = &self.coupling {
+            coupling.correct(self.step);
+        }
+    }
+
+    /// `stepᵀ (matrix + shift)⁻¹ step` of the factored matrix.
+    fn steepness(&mut self, envelope: &Envelope<'_, '_>) -> f64 {
+        self.scratch.copy_from_slice(self.step);
+        envelope.forward(self.factor, self.scratch);
+        if let Some(coupling) = &self.coupling {
+            envelope.backward(self.factor, self.scratch, envelope.rows());
+            coupling.correct(self.scratch);
+            return dot(self.scratch, self.step);
+        }
+        dot(self.scratch, self.scratch)
+    }
+
+    /// The decrease that the model promises for the step.
+    fn promise(&mut self, envelope: &Envelope<'_, '_>, matrix: &[f64]) -> f64 {
+        envelope.multiply(matrix, self.step, self.scratch);
+        if let Some(coupling) = &self.coupling {
+            coupling.add_product(self.step, self.scratch);
+        }
+        -dot(self.gradient, self.step) - 0.5 * dot(self.step, self.scratch)
+    }
 }
 
 /// How near to the radius a step on the boundary must be.
@@ -65,9 +103,12 @@ pub(super) fn solve(
     radius: f64,
     last_shift: f64,
 ) -> Option<Step> {
-    let Vectors { gradient, step, scratch, direction, factor } = vectors;
-    let norm = envelope.norm(matrix, scratch);
-    let gradient_length = libm::sqrt(dot(gradient, gradient));
+    let mut norm = envelope.norm(matrix, vectors.scratch);
+    let sparse_norm = norm;
+    if let Some(coupling) = &vectors.coupling {
+        norm += coupling.norm();
+    }
+    let gradient_length = libm::sqrt(dot(vectors.gradient, vectors.gradient));
     let (mut low, mut high) = (0.0f64, gradient_length / radius + norm);
     if !high.is_finite() {
         return None;
@@ -76,65 +117,60 @@ pub(super) fn solve(
     let mut have_direction = false;
     let mut best: Option<Step> = None;
     for _ in 0..MOST_FACTORISATIONS {
-        match envelope.factor(matrix, norm, shift, factor) {
-            Err(failure) => {
-                envelope.negative_direction(factor, &failure, direction);
-                let square = dot(direction, direction);
-                low = low.max(shift);
-                if failure.pivot.is_finite() && square.is_finite() {
-                    low = low.max(shift - failure.pivot / square);
-                    have_direction = true;
-                }
-                high = high.max(low * 1.01 + 1e-300);
-                shift = between(low, high, last_shift);
+        let factored = envelope.factor(matrix, sparse_norm, shift, vectors.factor);
+        let definite = match (&factored, &mut vectors.coupling) {
+            (Ok(()), Some(coupling)) => coupling.factored(envelope, vectors.factor),
+            (Ok(()), None) => true,
+            _ => false,
+        };
+        if let Err(failure) = &factored {
+            envelope.negative_direction(vectors.factor, failure, vectors.direction);
+            let square = dot(vectors.direction, vectors.direction);
+            if failure.pivot.is_finite() && square.is_finite() {
+                low = low.max(shift - failure.pivot / square);
+                have_direction = vectors.coupling.is_none();
             }
-            Ok(()) => {
-                for (s, g) in step.iter_mut().zip(gradient.iter()) {
-                    *s = -g;
-                }
-                envelope.forward(factor, step);
-                envelope.backward(factor, step, envelope.rows());
-                let square = dot(step, step);
-                let length = libm::sqrt(square);
-                let predicted = 0.5 * (shift * square - dot(gradient, step));
-                let found = Step { shift, length, predicted };
-                if (shift == 0.0 && length <= radius) || (length - radius).abs() <= RADIUS_TOLERANCE * radius
-                {
-                    return Some(found);
-                }
-                if length < radius {
-                    high = shift;
-                    if have_direction && high - low <= 1e-3 * high.max(f64::MIN_POSITIVE) {
-                        return Some(to_boundary(envelope, matrix, vectors, radius, found));
-                    }
-                } else {
-                    low = low.max(shift);
-                }
-                best = Some(found);
-                scratch.copy_from_slice(step);
-                envelope.forward(factor, scratch);
-                let slope = dot(scratch, scratch);
-                let newton = shift + (square / slope) * ((length - radius) / radius);
-                shift = if newton > low && newton < high { newton } else { between(low, high, 0.0) };
-                if !(high - low > 1e-14 * high) {
-                    break;
-                }
+        }
+        if !definite {
+            low = low.max(shift);
+            high = high.max(low * 1.01 + 1e-300);
+            shift = between(low, high, last_shift);
+            continue;
+        }
+        vectors.newton(envelope);
+        let square = dot(vectors.step, vectors.step);
+        let length = libm::sqrt(square);
+        let predicted = 0.5 * (shift * square - dot(vectors.gradient, vectors.step));
+        let found = Step { shift, length, predicted };
+        if (shift == 0.0 && length <= radius) || (length - radius).abs() <= RADIUS_TOLERANCE * radius {
+            return Some(found);
+        }
+        if length < radius {
+            high = shift;
+            if have_direction && high - low <= 1e-3 * high.max(f64::MIN_POSITIVE) {
+                return Some(to_boundary(envelope, matrix, vectors, radius, found));
             }
+        } else {
+            low = low.max(shift);
+        }
+        best = Some(found);
+        let newton = shift + (square / vectors.steepness(envelope)) * ((length - radius) / radius);
+        shift = if newton > low && newton < high { newton } else { between(low, high, 0.0) };
+        if !(high - low > 1e-14 * high) {
+            break;
         }
     }
     // The interval closed: the last step that a factorisation gave is shortened to the ball where it is too long.
     let found = best?;
-    envelope.factor(matrix, norm, found.shift, factor).ok()?;
-    for (s, g) in step.iter_mut().zip(gradient.iter()) {
-        *s = -g;
+    envelope.factor(matrix, sparse_norm, found.shift, vectors.factor).ok()?;
+    if let Some(coupling) = &mut vectors.coupling {
+        coupling.factored(envelope, vectors.factor);
     }
-    envelope.forward(factor, step);
-    envelope.backward(factor, step, envelope.rows());
+    vectors.newton(envelope);
     if found.length > radius {
         let shrink = radius / found.length;
-        step.iter_mut().for_each(|s| *s *= shrink);
-        envelope.multiply(matrix, step, scratch);
-        let predicted = -dot(gradient, step) - 0.5 * dot(step, scratch);
+        vectors.step.iter_mut().for_each(|s| *s *= shrink);
+        let predicted = vectors.promise(envelope, matrix);
         return Some(Step { length: radius, predicted, ..found });
     }
     Some(found)
@@ -158,7 +194,7 @@ fn to_boundary(
     radius: f64,
     found: Step,
 ) -> Step {
-    let Vectors { gradient, step, scratch, direction, .. } = vectors;
+    let Vectors { gradient, step, direction, .. } = vectors;
     let size = libm::sqrt(dot(direction, direction));
     let downhill = if dot(gradient, direction) > 0.0 { -1.0 } else { 1.0 };
     direction.iter_mut().for_each(|z| *z *= downhill / size);
@@ -168,7 +204,6 @@ fn to_boundary(
     for (s, z) in step.iter_mut().zip(direction.iter()) {
         *s += reach * z;
     }
-    envelope.multiply(matrix, step, scratch);
-    let predicted = -dot(gradient, step) - 0.5 * dot(step, scratch);
+    let predicted = vectors.promise(envelope, matrix);
     Step { length: radius, predicted, ..found }
 }

@@ -22,6 +22,7 @@ pub(super) struct Layout {
     pub(super) slot: usize,
     pub(super) slots: usize,
     pub(super) local: usize,
+    pub(super) coupled: usize,
 }
 
 impl Layout {
@@ -34,21 +35,24 @@ impl Layout {
             incidences += list.len();
         }
         let local = problem.max_element_dofs();
+        let unknowns = (0..blocks).map(|block| problem.dofs(block)).sum();
+        let coupled = problem.is_coupled();
         Self {
-            unknowns: (0..blocks).map(|block| problem.dofs(block)).sum(),
+            unknowns,
             blocks,
             incidences,
             envelope: problem.envelope_bound(),
             state: problem.state_len(),
-            slot: 1 + local + packed_len(local),
+            slot: 2 + (1 + usize::from(coupled)) * local + packed_len(local),
             slots: width.max(1),
             local,
+            coupled: if coupled { unknowns } else { 0 },
         }
     }
 
     /// The lengths of the parts, in the order in which [`Layout::carve`] hands them out.
-    fn parts(&self) -> [usize; 22] {
-        let Self { unknowns: n, blocks, incidences, envelope, state, slot, slots, local } = *self;
+    fn parts(&self) -> [usize; 26] {
+        let Self { unknowns: n, blocks, incidences, envelope, state, slot, slots, local, coupled } = *self;
         [
             blocks,     // order
             blocks,     // offset
@@ -72,6 +76,10 @@ impl Layout {
             local, // rows of a dense local matrix: first
             local, // rows of a dense local matrix: start
             packed_len(local) * 2 + 5 * local,
+            coupled, // gradient of the first sum
+            coupled, // gradient of the second sum
+            coupled, // both divided by the matrix
+            coupled,
         ]
     }
 
@@ -113,6 +121,10 @@ impl Layout {
             local_first,
             local_start,
             local,
+            first_gradient,
+            second_gradient,
+            first_solved,
+            second_solved,
         ] = parts;
         Ok(Workspace {
             order: Indices(order),
@@ -137,6 +149,8 @@ impl Layout {
             local_first: Indices(local_first),
             local_start: Indices(local_start),
             local,
+            sum_gradients: [first_gradient, second_gradient],
+            solved: [first_solved, second_solved],
             slot_len: self.slot,
         })
     }
@@ -166,33 +180,39 @@ pub(super) struct Workspace<'a> {
     pub(super) local_first: Indices<'a>,
     pub(super) local_start: Indices<'a>,
     pub(super) local: &'a mut [f64],
+    pub(super) sum_gradients: [&'a mut [f64]; 2],
+    pub(super) solved: [&'a mut [f64]; 2],
     pub(super) slot_len: usize,
 }
 
 /// Small whole numbers kept in a slice of `f64`, so that a caller hands over one kind of memory. Exact up to 2^53.
-pub(super) struct Indices<'a>(&'a mut [f64]);
+pub(crate) struct Indices<'a>(&'a mut [f64]);
 
-impl Indices<'_> {
+impl<'a> Indices<'a> {
+    pub(crate) fn new(memory: &'a mut [f64]) -> Self {
+        Self(memory)
+    }
+
     #[inline]
-    pub(super) fn get(&self, at: usize) -> usize {
+    pub(crate) fn get(&self, at: usize) -> usize {
         self.0[at] as usize
     }
 
     #[inline]
-    pub(super) fn set(&mut self, at: usize, value: usize) {
+    pub(crate) fn set(&mut self, at: usize, value: usize) {
         self.0[at] = value as f64;
     }
 
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.0.len()
     }
 
     /// The first `len` of them.
-    pub(super) fn head(&mut self, len: usize) -> Indices<'_> {
+    pub(crate) fn head(&mut self, len: usize) -> Indices<'_> {
         Indices(&mut self.0[..len])
     }
 
-    pub(super) fn fill(&mut self, value: usize) {
+    pub(crate) fn fill(&mut self, value: usize) {
         self.0.fill(value as f64);
     }
 }

@@ -6,10 +6,11 @@ use super::{
 };
 use crate::basis::bernstein::Bernstein;
 use crate::basis::hermite;
-use crate::basis::quadrature::FINEST;
+use crate::basis::mirrored::pairs;
+use crate::basis::quadrature::MAX_POINTS;
 use crate::curve::element::Element;
-use crate::curve::fairness::Functional;
-use crate::curve::rows::{combine, row_cost};
+use crate::curve::functional::Weights;
+use crate::curve::rows::{Integrand, combine};
 use nalgebra::Vector3;
 
 /// The length of a chain: 32-point Gauss–Lobatto an element, which is exact to rounding for elements without near
@@ -33,16 +34,17 @@ fn halves(rows: &[Vector3<f64>; 6]) -> [[Vector3<f64>; 6]; 2] {
     [half(rows[0], rows[1], rows[2], a, v, p), half(p, v, a, rows[3], rows[4], rows[5])]
 }
 
-fn total(functional: Functional, elements: &[Element]) -> f64 {
+fn total(weights: Weights, elements: &[Element]) -> f64 {
+    let integrand = Integrand::<3>::plain(weights, pairs(MAX_POINTS));
     let mut sum = 0.0;
     for element in elements {
         let (rows, unit) = normalised(element);
         // Each half by itself: finer than any rule that a curve is minimised with.
         let mut value = 0.0;
         for half in halves(&rows) {
-            value += row_cost::<3>(functional, &FINEST, &half);
+            value += integrand.value(&half, |_| {})[0];
         }
-        sum += if functional.scale_power() == 1 { value / unit } else { value / unit / unit / unit };
+        sum += if weights.bending != 0.0 { value / unit } else { value / unit / unit / unit };
     }
     sum
 }
@@ -50,13 +52,13 @@ fn total(functional: Functional, elements: &[Element]) -> f64 {
 /// The variation of curvature `V = ∫ |dκ/ds|² ds` of a chain, with `κ` the binormal curvature vector (thesis 4.2), by
 /// 32-point Gauss–Lobatto over each half of every element; 1/length³. What happens between elements (a jump of curvature at a G1 joint) does not count.
 pub fn variation(elements: &[Element]) -> f64 {
-    total(Functional::MVC, elements)
+    total(Weights::VARIATION, elements)
 }
 
 /// The bending energy `E = ∫ κ² ds` of a chain (thesis 4.1), by 32-point Gauss–Lobatto over each half of every
 /// element; 1/length.
 pub fn bending(elements: &[Element]) -> f64 {
-    total(Functional::MEC, elements)
+    total(Weights::BENDING, elements)
 }
 
 fn cross(a: &[Bernstein; 3], b: &[Bernstein; 3]) -> [Bernstein; 3] {

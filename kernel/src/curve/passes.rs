@@ -1,0 +1,195 @@
+//! Minimisations one after the other, as one to the caller: iterations numbered through, values in the caller's units.
+
+use super::fairness::{Density, Shape};
+use super::model::{Goal, Model};
+use crate::solve::{
+    self, Control, InOrder, Observer, Outcome, Problem, Record, Settings, Status, WorkspaceTooSmall,
+};
+
+/// The first pass ends when a step promises to lower the functional by less than this fraction.
+const SHAPING_DECREASE: f64 = 1e-1;
+/// Steps of each element by itself between two of the whole curve.
+const RELAXATION: usize = 10;
+
+/// The penalties, in units of the functional, with which a given length is approached, one after the other.
+const PENALTIES: [f64; 3] = [1e2, 1e4, 1e6];
+/// A length is met to this fraction.
+const LENGTH_MET: f64 = 1e-13;
+/// More corrections of a length's multiplier than are ever needed.
+const MOST_CORRECTIONS: usize = 12;
+
+pub(super) struct Passes<'a> {
+    observer: &'a mut dyn Observer,
+    records: &'a mut [Record],
+    scale: f64,
+    /// The most iterations of all together.
+    most: usize,
+    pub(super) iterations: usize,
+    pub(super) linearisations: usize,
+    /// The length that is asked for, in the local unit.
+    length: Option<f64>,
+    multiplier: f64,
+    /// See [`Settings::explore_first`].
+    explore_first: bool,
+}
+
+impl<'a> Passes<'a> {
+    pub(super) fn new(
+        observer: &'a mut dyn Observer,
+        records: &'a mut [Record],
+        scale: f64,
+        most: usize,
+        length: Option<f64>,
+    ) -> Self {
+        Self {
+            observer,
+            records,
+            scale,
+            most,
+            iterations: 0,
+            linearisations: 0,
+            length,
+            multiplier: 0.0,
+            explore_first: false,
+        }
+    }
+
+    /// Two passes. First the shape, with a parametrisation that is kept even: only the shape decides how far a step goes
+    /// then, and what is left to the second pass lies in the right one of many shallow valleys.
+    pub(super) fn shape_and_finish<const D: usize>(
+        &mut self,
+        model: &mut Model<'_, D>,
+        relative_decrease: f64,
+        state: &mut [f64],
+        work: &mut [f64],
+    ) -> Result<Outcome, WorkspaceTooSmall>
+    where
+        Shape<D>: Density<D>,
+    {
+        let start_cost = guard(model, state);
+        let natural = if start_cost > 0.0 { model.natural_cost.min(start_cost) } else { model.natural_cost };
+        model.gauge = natural / model.element_count() as f64;
+        let outcome = self.minimise(model, SHAPING_DECREASE, 0, state, work)?;
+        model.gauge = 0.0;
+        if matches!(outcome.status, Status::Cancelled | Status::Unbounded) {
+            return Ok(outcome);
+        }
+        self.explore_first = true;
+        let outcome = self.finish(model, relative_decrease, state, work);
+        self.explore_first = false;
+        outcome
+    }
+
+    /// The last pass, from a state that has the right shape already. A given length is met here.
+    pub(super) fn finish<const D: usize>(
+        &mut self,
+        model: &mut Model<'_, D>,
+        relative_decrease: f64,
+        state: &mut [f64],
+        work: &mut [f64],
+    ) -> Result<Outcome, WorkspaceTooSmall>
+    where
+        Shape<D>: Density<D>,
+    {
+        guard(model, state);
+        let Some(target) = self.length else {
+            return self.minimise(model, relative_decrease, RELAXATION, state, work);
+        };
+        // The method of multipliers: value + multiplier (L − target) + ½ penalty (L − target)².
+        let mut corrections = 0;
+        let mut stage = if self.multiplier == 0.0 { 0 } else { PENALTIES.len() - 1 };
+        loop {
+            let [value, _] = total(model, state);
+            let unit = (value + 1e-3 * model.natural_cost) / (target * target);
+            let penalty = PENALTIES[stage] * unit;
+            model.goal = Some(Goal { target, multiplier: self.multiplier, penalty });
+            let last = stage + 1 == PENALTIES.len();
+            let decrease = if last { relative_decrease } else { 1e-6_f64.max(relative_decrease) };
+            // An element by itself would grow without limit to make a curve longer: none is relaxed.
+            let outcome = self.minimise(model, decrease, 0, state, work)?;
+            model.goal = None;
+            let [value, length] = total(model, state);
+            let off = length - target;
+            self.multiplier += penalty * off;
+            corrections += 1;
+            let stopped = !matches!(outcome.status, Status::Converged | Status::Stalled);
+            let met = off.abs() <= LENGTH_MET * target;
+            if stopped || (last && (met || corrections >= MOST_CORRECTIONS)) {
+                let status = if stopped || met { outcome.status } else { Status::Stalled };
+                return Ok(Outcome { value, status, ..outcome });
+            }
+            stage = (stage + 1).min(PENALTIES.len() - 1);
+        }
+    }
+
+    /// One pass, with what is left of the iterations.
+    fn minimise<const D: usize>(
+        &mut self,
+        model: &Model<'_, D>,
+        relative_decrease: f64,
+        relaxation: usize,
+        state: &mut [f64],
+        work: &mut [f64],
+    ) -> Result<Outcome, WorkspaceTooSmall>
+    where
+        Shape<D>: Density<D>,
+    {
+        let settings = Settings {
+            max_iterations: self.most - self.iterations.min(self.most),
+            relative_decrease,
+            relaxation,
+            explore_first: self.explore_first,
+            ..Settings::DEFAULT
+        };
+        let outcome = solve::minimise(model, &settings, &InOrder, state, work, &mut [], self)?;
+        self.iterations += outcome.iterations;
+        self.linearisations += outcome.linearisations;
+        Ok(outcome)
+    }
+}
+
+/// The functional without a length's multiplier, and the length.
+fn total<const D: usize>(model: &Model<'_, D>, state: &[f64]) -> [f64; 2]
+where
+    Shape<D>: Density<D>,
+{
+    let mut sums = [0.0; 2];
+    for element in 0..model.element_count() {
+        let [own, length] = model.sums(element, state);
+        sums[0] += own;
+        sums[1] += length;
+    }
+    sums
+}
+
+/// Lets the start be outside the guarded domain if it is: then a cusp is refused at the end, not on the way. Returns the
+/// start's cost.
+fn guard<const D: usize>(model: &mut Model<'_, D>, state: &[f64]) -> f64
+where
+    Shape<D>: Density<D>,
+{
+    model.guarded = true;
+    let [cost, _] = total(model, state);
+    if cost.is_finite() {
+        return cost;
+    }
+    model.guarded = false;
+    total(model, state)[0]
+}
+
+impl Observer for Passes<'_> {
+    fn iteration(&mut self, number: usize, record: &Record) -> Control {
+        let record = Record {
+            value: record.value * self.scale,
+            predicted: record.predicted * self.scale,
+            actual: record.actual * self.scale,
+            gradient: record.gradient * self.scale,
+            ..*record
+        };
+        let number = self.iterations + number;
+        if let Some(slot) = self.records.get_mut(number - 1) {
+            *slot = record;
+        }
+        self.observer.iteration(number, &record)
+    }
+}

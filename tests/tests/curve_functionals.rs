@@ -1,0 +1,355 @@
+//! The functionals and constraints beyond MVC and MEC, against true curves in arc length (`data/truth.csv`) and against what
+//! must hold of them.
+
+use minvar::curve::{
+    Curve, CurveError, Element, Functional, Joint, OptionName, Options, Quantity, Reference, elements_len,
+    measure, solve, update, workspace_len,
+};
+use minvar::solve::{Silent, Status};
+use minvar_tests::curves::{deviation, solve_curve};
+use std::collections::BTreeMap;
+
+const WOODFORD: [[f64; 2]; 7] =
+    [[0.0, 0.0], [1.0, 1.9], [2.0, 2.7], [3.0, 2.6], [4.0, 1.6], [5.0, 0.89], [6.0, 1.2]];
+
+fn woodford() -> Vec<Joint> {
+    WOODFORD.iter().map(|&[x, y]| Joint::at([x, y, 0.0])).collect()
+}
+
+/// An S between points 4 apart whose tangents lean by so many degrees at either end.
+fn s_curve(degrees: f64) -> Vec<Joint> {
+    let angle = degrees.to_radians();
+    let along = [libm::cos(angle), libm::sin(angle), 0.0];
+    let end = |x| Joint::at([x, 0.0, 0.0]).with_tangent(Quantity::fixed(along));
+    vec![end(-2.0), end(2.0)]
+}
+
+/// The true curves: V, E and L by name and functional.
+fn truth() -> BTreeMap<(String, String), [f64; 3]> {
+    include_str!("../data/truth.csv")
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .skip(1)
+        .map(|line| {
+            let fields: Vec<&str> = line.split(',').map(str::trim).collect();
+            let number = |i: usize| fields[i].parse().expect("a number");
+            ((fields[0].to_owned(), fields[1].to_owned()), [number(2), number(3), number(4)])
+        })
+        .collect()
+}
+
+fn close(found: f64, wanted: f64, allowed: f64, what: &str) {
+    assert!((found - wanted).abs() <= allowed * wanted.abs(), "{what}: {found}, not {wanted}");
+}
+
+#[test]
+fn every_functional_reaches_its_true_curve() {
+    let truth = truth();
+    let options = Options { elements_per_span: 4, ..Options::DEFAULT };
+    for (functional, tension, bending, name) in [
+        (Functional::MVC, 0.0, 0.0, "mvc"),
+        (Functional::MEC, 0.0, 0.0, "mec"),
+        (Functional::SI_MVC, 0.0, 0.0, "si-mvc"),
+        (Functional::SI_MEC, 0.0, 0.0, "si-mec"),
+        (Functional::MVC, 0.5, 0.0, "mvc+0.5l"),
+        (Functional::MVC, 0.0, 0.5, "mvc+0.5e"),
+        (Functional::MEC, 0.5, 0.0, "mec+0.5l"),
+    ] {
+        let [v, e, l] = truth[&("woodford".to_owned(), name.to_owned())];
+        let options = Options { functional, tension, bending, ..options };
+        let (report, _) = solve_curve(&woodford(), false, &options).expect("good data");
+        assert_eq!(report.status, Status::Converged, "{name}");
+        // What is not minimised itself is known to the square root of what is.
+        let bends = functional == Functional::MEC || functional == Functional::SI_MEC;
+        close(report.variation, v, if bends { 1e-4 } else { 1e-8 }, name);
+        close(report.bending, e, 1e-8, name);
+        close(report.length, l, 1e-8, name);
+        let plain = if bends { e } else { v + bending * e } + tension * l;
+        let value = match functional {
+            Functional::SI_MVC => plain * l * l * l,
+            Functional::SI_MEC => plain * l,
+            _ => plain,
+        };
+        close(report.value, value, 1e-9, name);
+    }
+}
+
+#[test]
+fn a_scale_invariant_value_is_the_same_at_any_size() {
+    let (unit, _) =
+        solve_curve(&woodford(), false, &Options { functional: Functional::SI_MVC, ..Options::DEFAULT })
+            .expect("good data");
+    for size in [1e-6, 3.7, 1e6] {
+        let joints: Vec<Joint> =
+            WOODFORD.iter().map(|&[x, y]| Joint::at([x * size, y * size, 0.0])).collect();
+        for functional in [Functional::SI_MVC, Functional::SI_MEC] {
+            let options = Options { functional, ..Options::DEFAULT };
+            let (report, _) = solve_curve(&joints, false, &options).expect("good data");
+            assert_eq!(report.status, Status::Converged);
+            if functional == Functional::SI_MVC {
+                close(report.value, unit.value, 1e-9, "L³V");
+            }
+        }
+    }
+}
+
+#[test]
+fn weights_scale_with_the_data() {
+    let at = |size: f64, tension: f64, bending: f64| {
+        let joints: Vec<Joint> =
+            WOODFORD.iter().map(|&[x, y]| Joint::at([x * size, y * size, 0.0])).collect();
+        let options = Options { tension, bending, ..Options::DEFAULT };
+        solve_curve(&joints, false, &options).expect("good data").0.length / size
+    };
+    let (one, free) = (at(1.0, 0.5, 0.25), at(1.0, 0.0, 0.0));
+    close(at(3.0, 0.5 / 81.0, 0.25 / 9.0), one, 1e-9, "scaled weights");
+    assert!(one < free - 1e-3);
+}
+
+#[test]
+fn a_scale_invariant_curve_exists_where_the_mvc_does_not() {
+    let truth = truth();
+    let options = Options { elements_per_span: 64, tolerance: 1e-6, ..Options::DEFAULT };
+    for (degrees, name) in [(90.0, "s_curve"), (110.0, "s_110")] {
+        let (report, _) = solve_curve(&s_curve(degrees), false, &options).expect("good data");
+        assert_eq!(report.status, Status::Converged, "{degrees}");
+        let [v, e, l] = truth[&(name.to_owned(), "mvc".to_owned())];
+        close(report.variation, v, 1e-6, "S");
+        close(report.bending, e, 1e-6, "S");
+        close(report.length, l, 1e-6, "S");
+    }
+    let options = Options { functional: Functional::SI_MVC, ..options };
+    for degrees in [90.0, 120.0] {
+        let (report, _) = solve_curve(&s_curve(degrees), false, &options).expect("good data");
+        assert_eq!(report.status, Status::Converged, "{degrees}");
+    }
+}
+
+#[test]
+fn a_tolerance_is_kept_by_as_few_elements_as_it_needs() {
+    let mut before = 0;
+    let joints = woodford();
+    for tolerance in [1e-3, 1e-7, 1e-9] {
+        let options = Options { tolerance, elements_per_span: 64, ..Options::DEFAULT };
+        let curve = Curve::open(&joints);
+        let mut workspace = vec![f64::NAN; workspace_len(&curve, &options).expect("good data")];
+        let mut elements = vec![Element::ZERO; elements_len(&curve, &options)];
+        let report =
+            solve(&curve, &options, &mut workspace, &mut elements, &mut [], &mut Silent).expect("good data");
+        assert_eq!(report.status, Status::Converged);
+        assert!(report.error <= tolerance);
+        assert!(report.elements >= before && report.elements <= 6 * 64);
+        assert!(elements[report.elements..].iter().all(|element| *element == Element::ZERO));
+        before = report.elements;
+    }
+    assert!(before > 6);
+    let options = Options { tolerance: 1e-9, elements_per_span: 1, ..Options::DEFAULT };
+    let (report, _) = solve_curve(&woodford(), false, &options).expect("good data");
+    assert!(report.status == Status::Converged || report.error > 1e-9, "one element is not that near");
+}
+
+#[test]
+fn a_sliding_joint_stays_on_its_line_or_plane_and_lowers_the_functional() {
+    let fixed = [
+        Joint::at([0.5, -12.0, 0.0])
+            .with_tangent(Quantity::fixed([0.0, 1.0, 0.0]))
+            .with_curvature(Quantity::fixed([0.27, 0.0, 0.0])),
+        Joint::at([20.0, -0.5, 0.0]).with_tangent(Quantity::fixed([1.0, 0.0, 0.0])),
+    ];
+    let (before, _) = solve_curve(&fixed, false, &Options::DEFAULT).expect("good data");
+    let mut slides = fixed;
+    slides[0] = slides[0].on_line([0.5, -12.0, 0.0], [0.0, 3.0, 0.0]);
+    let (report, elements) = solve_curve(&slides, false, &Options::DEFAULT).expect("good data");
+    assert_eq!(report.status, Status::Converged);
+    assert!(report.planar && report.unknowns == before.unknowns + 1);
+    let start = elements[0].rows[0];
+    assert!((start[0] - 0.5).abs() < 1e-14 && start[2] == 0.0 && start[1] > -11.0, "{start:?}");
+    assert!(report.value < 0.9 * before.value);
+    // The minimum over the line: fixed there or a little aside, it is no better.
+    for off in [0.0, 1e-2, -1e-2] {
+        let mut aside = fixed;
+        aside[0].position.value = [start[0], start[1] + off, 0.0];
+        let (other, _) = solve_curve(&aside, false, &Options::DEFAULT).expect("good data");
+        assert!(other.value >= report.value * (1.0 - 1e-9), "{off}");
+        assert!(off == 0.0 || other.value > report.value * (1.0 + 1e-8), "{off}");
+    }
+
+    let normal = [1.0, 0.2, -0.1];
+    let in_plane = [
+        Joint::at([0.0, 0.0, 0.0]).with_tangent(Quantity::fixed([1.0, 0.0, 0.0])),
+        Joint::at([0.0; 3]).on_plane([1.0, 0.5, 0.3], normal),
+        Joint::at([2.0, 0.0, 1.0]),
+        Joint::at([2.0, 1.0, 2.0]).with_tangent(Quantity::fixed([0.0, 0.3, 1.0])),
+    ];
+    let (report, elements) = solve_curve(&in_plane, false, &Options::DEFAULT).expect("good data");
+    assert_eq!(report.status, Status::Converged);
+    let met = elements[1].rows[0];
+    let off: f64 = (0..3).map(|d| normal[d] * (met[d] - [1.0, 0.5, 0.3][d])).sum();
+    assert!(off.abs() < 1e-14, "{off}");
+    let without = [in_plane[0], in_plane[2], in_plane[3]];
+    let (fewer, _) = solve_curve(&without, false, &Options::DEFAULT).expect("good data");
+    assert!(report.value <= fewer.value * (1.0 + 1e-6), "{} {}", report.value, fewer.value);
+}
+
+#[test]
+fn a_curvature_of_given_size_keeps_it_and_finds_its_direction() {
+    let joints = |curvature| {
+        [
+            Joint::at([0.0, 0.0, 0.0])
+                .with_tangent(Quantity::fixed([0.0, 0.0, 1.0]))
+                .with_curvature(curvature),
+            Joint::at([1.0, 0.0, 1.0]),
+            Joint::at([2.0, 2.0, 1.0]),
+        ]
+    };
+    let mut values = Vec::new();
+    for start in [[0.3, 0.0, 0.0], [0.0, -0.3, 0.0], [0.0, 0.0, 0.3]] {
+        let (report, elements) =
+            solve_curve(&joints(Quantity::of_size(start)), false, &Options::DEFAULT).expect("good data");
+        assert_eq!(report.status, Status::Converged);
+        let found = measure::at(&elements, 0, 0.0).expect("a point").curvature;
+        let size = found.iter().map(|x| x * x).sum::<f64>().sqrt();
+        close(size, 0.3, 1e-13, "size");
+        values.push(report.value);
+    }
+    // It is at least as good as any direction that is fixed.
+    let best = values.iter().fold(f64::INFINITY, |best, &value| best.min(value));
+    for step in 0..12 {
+        let angle = f64::from(step) * std::f64::consts::FRAC_PI_6;
+        let vector = [0.3 * libm::cos(angle), 0.3 * libm::sin(angle), 0.0];
+        let (report, _) =
+            solve_curve(&joints(Quantity::fixed(vector)), false, &Options::DEFAULT).expect("good data");
+        if report.status == Status::Converged {
+            assert!(best <= report.value * (1.0 + 1e-6), "{angle}: {best} {}", report.value);
+        }
+    }
+}
+
+#[test]
+fn a_reference_shape_is_kept_deformed_and_smoothed_away() {
+    // A wavy shape: the MEC of these points.
+    let joints = woodford();
+    let (_, shape) =
+        solve_curve(&joints, false, &Options { functional: Functional::MEC, ..Options::DEFAULT })
+            .expect("good data");
+    let with = |joints: &[Joint], weight: f64| {
+        let curve = Curve::open(joints).with_reference(Reference { elements: &shape, weight });
+        let options = Options::DEFAULT;
+        let mut workspace = vec![f64::NAN; workspace_len(&curve, &options).expect("good data")];
+        let mut elements = vec![Element::ZERO; elements_len(&curve, &options)];
+        let report =
+            solve(&curve, &options, &mut workspace, &mut elements, &mut [], &mut Silent).expect("good data");
+        assert_eq!(report.status, Status::Converged, "{weight}");
+        (report, elements)
+    };
+    let apart = |a: &[Element], b: &[Element]| deviation(a, b, a.len());
+    let (report, same) = with(&joints, 1.0);
+    assert!(report.value < 1e-12 && apart(&same, &shape) < 1e-9);
+    // Between all and nothing of the reference, the shape goes over into the MVC.
+    let (_, fair) = solve_curve(&joints, false, &Options::DEFAULT).expect("good data");
+    let mut last = 0.0;
+    for weight in [0.75, 0.5, 0.25, 0.0] {
+        let (_, found) = with(&joints, weight);
+        let off = apart(&found, &shape);
+        assert!(off > last, "{weight}: {off}");
+        last = off;
+    }
+    let (report, found) = with(&joints, 0.0);
+    assert!(apart(&found, &fair) < 1e-4);
+    close(report.value, report.variation, 1e-12, "V");
+    // Dragged at one end only, with what was known there held, the rest stays what it was without any joint between.
+    let ends = [shape[0].rows[0], shape[5].rows[5]].map(Joint::at);
+    let (report, alone) = {
+        let one = [shape[0]];
+        let joints = [
+            ends[0].with_tangent(Quantity::fixed(shape[0].rows[1])),
+            Joint::at(shape[0].rows[5]).with_tangent(Quantity::fixed(shape[0].rows[4])),
+        ];
+        let curve = Curve::open(&joints).with_reference(Reference { elements: &one, weight: 1.0 });
+        let mut workspace = vec![f64::NAN; workspace_len(&curve, &Options::DEFAULT).expect("good data")];
+        let mut elements = [Element::ZERO];
+        let report = solve(&curve, &Options::DEFAULT, &mut workspace, &mut elements, &mut [], &mut Silent)
+            .expect("good data");
+        (report, elements)
+    };
+    assert!(report.value < 1e-12 && apart(&alone, &shape[..1]) < 1e-9, "{}", report.value);
+}
+
+#[test]
+fn a_reference_that_cannot_be_is_refused() {
+    let joints = woodford();
+    let element = Element { rows: [[0.0; 3], [1.0; 3], [0.0; 3], [0.0; 3], [1.0; 3], [1.0; 3]] };
+    let refuse = |elements: &[Element], weight: f64, options: &Options| {
+        let curve = Curve::open(&joints).with_reference(Reference { elements, weight });
+        workspace_len(&curve, options).expect_err("refused")
+    };
+    let six = [element; 6];
+    assert_eq!(
+        refuse(&six[..5], 1.0, &Options::DEFAULT),
+        CurveError::WrongElementCount { needed: 6, given: 5 }
+    );
+    for weight in [-0.1, 1.1, f64::NAN] {
+        let error = CurveError::BadOption(OptionName::ReferenceWeight);
+        assert_eq!(refuse(&six, weight, &Options::DEFAULT), error);
+    }
+    let mec = Options { functional: Functional::MEC, ..Options::DEFAULT };
+    assert_eq!(refuse(&six, 1.0, &mec), CurveError::BadOption(OptionName::ReferenceWeight));
+    let mut bad = six;
+    bad[4].rows[2][1] = f64::NAN;
+    assert_eq!(refuse(&bad, 1.0, &Options::DEFAULT), CurveError::BadElement { element: 4 });
+    bad[4].rows[2][1] = 0.0;
+    bad[3].rows[4] = [0.0; 3];
+    assert_eq!(refuse(&bad, 1.0, &Options::DEFAULT), CurveError::BadElement { element: 3 });
+}
+
+#[test]
+fn options_of_functionals_are_checked() {
+    let refuse = |options: Options| workspace_len(&Curve::open(&woodford()), &options).expect_err("refused");
+    for bad in [-1.0, f64::NAN, f64::INFINITY] {
+        let base = Options::DEFAULT;
+        let error = |name| CurveError::BadOption(name);
+        assert_eq!(refuse(Options { tension: bad, ..base }), error(OptionName::Tension));
+        assert_eq!(refuse(Options { bending: bad, ..base }), error(OptionName::Bending));
+        assert_eq!(refuse(Options { length: bad, ..base }), error(OptionName::Length));
+        assert_eq!(refuse(Options { tolerance: bad, ..base }), error(OptionName::Tolerance));
+    }
+    let scaled = Options { functional: Functional::SI_MVC, ..Options::DEFAULT };
+    let error = CurveError::BadOption(OptionName::Tension);
+    assert_eq!(refuse(Options { tension: 1.0, ..scaled }), error);
+    assert_eq!(refuse(Options { length: 8.0, ..Options::DEFAULT }), CurveError::LengthTooShort);
+    let mut joints = woodford();
+    joints[2] = joints[2].on_line([2.0, 2.7, 0.0], [0.0; 3]);
+    let error = workspace_len(&Curve::open(&joints), &Options::DEFAULT).expect_err("refused");
+    assert_eq!(error, CurveError::ZeroGuide { joint: 2 });
+}
+
+#[test]
+fn a_warm_start_finds_what_a_cold_one_does() {
+    let joints = woodford();
+    for elements_per_span in [1, 3] {
+        let options = Options { elements_per_span, ..Options::DEFAULT };
+        let (_, mut elements) = solve_curve(&joints, false, &options).expect("good data");
+        let mut moved = joints.clone();
+        for step in 0..10 {
+            moved[3].position.value[1] += 0.02;
+            let curve = Curve::open(&moved);
+            let mut workspace = vec![f64::NAN; workspace_len(&curve, &options).expect("good data")];
+            let report = update(&curve, &options, &mut workspace, &mut elements, &mut [], &mut Silent)
+                .expect("good data");
+            assert_eq!(report.status, Status::Converged);
+            let (cold, _) = solve_curve(&moved, false, &options).expect("good data");
+            let what = format!("{elements_per_span} a span, step {step}");
+            close(report.value, cold.value, if elements_per_span == 1 { 2e-6 } else { 1e-7 }, &what);
+            for (joint, element) in moved.iter().zip(elements.iter().step_by(elements_per_span as usize)) {
+                assert_eq!(joint.position.value, element.rows[0], "{what}");
+            }
+        }
+    }
+    let options = Options::DEFAULT;
+    let curve = Curve::open(&joints);
+    let mut workspace = vec![0.0; workspace_len(&curve, &options).expect("good data")];
+    let mut elements = [Element::ZERO; 6];
+    let error = update(&curve, &options, &mut workspace, &mut elements, &mut [], &mut Silent);
+    assert_eq!(error.expect_err("no start"), CurveError::BadElement { element: 0 });
+    assert_eq!(elements, [Element::ZERO; 6]);
+}
