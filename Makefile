@@ -4,6 +4,8 @@
 # make lint          formatting, clippy, documentation
 # make header        writes include/minvar.h anew
 # make table         Appendix A of the thesis: published, ours, Ceres
+# make random        20,000 random problems, judged independently; libspiro and OpenCASCADE beside
+# make bench         minvar against Ceres, libspiro and OpenCASCADE, as ratios in one run (some minutes)
 # make memory        bytes of workspace, stack and code
 # make pictures      draws docs/*.svg anew
 # make help          this text
@@ -12,15 +14,16 @@
 
 CARGO ?= cargo
 CC ?= cc
+CXX ?= c++
 CFLAGS ?= -O2
 OUT := coving
 LIB := target/release/libminvar.a
 WARN := -std=c11 -Wall -Wextra -Wpedantic -Wconversion -Werror
 
-.PHONY: coving test test-clients lint header help tools lib examples table memory pictures clean
+.PHONY: coving test test-clients lint header help tools lib examples table random bench peer-tools memory pictures clean
 
 help:
-	@sed -n 's/^# \{0,1\}//p' Makefile | head -11
+	@sed -n 's/^# \{0,1\}//p' Makefile | head -13
 
 tools:
 	@command -v $(CARGO) >/dev/null || { echo "minvar needs Rust 1.89 or later: https://rustup.rs" >&2; exit 1; }
@@ -63,6 +66,40 @@ test-clients: coving
 table: tools
 	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "the reference that curves are checked against"
 	$(CARGO) run --locked --release -p minvar-tests --bin table
+
+# Peers get the flags that are best for them; processor features beyond the baseline nobody gets.
+PEERS := target/peers
+PEER_FLAGS := -std=c++17 -Wall -Wextra -O3 -DNDEBUG -fno-math-errno
+
+peer-tools: tools
+	@scripts/need.sh $(CXX) g++ "the C++ compiler"
+	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "a peer, and the reference"
+	@scripts/need.sh /usr/include/spiroentrypoints.h libspiro-dev "a peer that takes points"
+	@scripts/need.sh /usr/include/opencascade/FairCurve_MinimalVariation.hxx libocct-modeling-algorithms-dev \
+		"a peer that takes two points and tangents"
+	@scripts/need.sh /usr/include/opencascade/Geom2d_BSplineCurve.hxx libocct-modeling-data-dev "what that peer makes"
+	@mkdir -p $(PEERS)
+
+$(PEERS)/least_squares: tests/peers/least_squares.cpp $(wildcard tests/peers/*.hpp) | peer-tools
+	$(CXX) $(PEER_FLAGS) -isystem /usr/include/eigen3 $< -lceres -lglog -o $@
+
+$(PEERS)/spiro $(PEERS)/random_spiro: $(PEERS)/%: tests/peers/%.cpp tests/peers/peer.hpp | peer-tools
+	$(CXX) $(PEER_FLAGS) $< -lspiro -o $@
+
+OCCT := -lTKGeomAlgo -lTKG2d -lTKMath -lTKernel
+$(PEERS)/opencascade: tests/peers/opencascade.cpp tests/peers/peer.hpp | peer-tools
+	$(CXX) $(PEER_FLAGS) -isystem /usr/include/opencascade $< $(OCCT) -o $@
+
+$(PEERS)/random_occt: tests/peers/random_occt.cpp | peer-tools
+	$(CXX) $(PEER_FLAGS) -isystem /usr/include/opencascade $< $(OCCT) -o $@
+
+bench: $(PEERS)/least_squares $(PEERS)/spiro $(PEERS)/opencascade
+	$(CARGO) run --locked --release -p minvar-tests --bin bench -- $(PEERS) target/bench.jsonl
+
+# Exit status 1 if a promise is broken. RANDOM="--seed 2 --list" for others.
+random: $(PEERS)/random_spiro $(PEERS)/random_occt
+	$(CARGO) run --locked --release -p minvar-tests --bin random -- \
+		--spiro $(PEERS)/random_spiro --occt $(PEERS)/random_occt $(RANDOM)
 
 memory: examples
 	$(CC) -std=gnu11 -Wall -Wextra -O2 -Iinclude tests/c/memory.c $(LIB) -lm -lpthread -o target/c_examples/memory

@@ -300,7 +300,8 @@ typedef struct minvar_curve {
     double reference_weight;
 } minvar_curve;
 
-// What one iteration did: one trial step, accepted or not. `value`, `predicted`, `actual` and `gradient` in the
+// What one iteration did: one trial step, accepted or not; one on a curve's directions alone, which come first where a
+// curve is planar, has only a value and a step. `value`, `predicted`, `actual` and `gradient` in the
 // functional's unit (1/length^3 for MVC, 1/length for MEC), `step` and `shift` without one.
 typedef struct minvar_record {
     // The functional after the iteration. In the first iterations it holds a term that keeps the parametrisation even.

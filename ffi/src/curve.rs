@@ -144,7 +144,8 @@ pub struct minvar_element {
     pub rows: [[f64; 3]; 6],
 }
 
-/// What one iteration did: one trial step, accepted or not. `value`, `predicted`, `actual` and `gradient` in the
+/// What one iteration did: one trial step, accepted or not; one on a curve's directions alone, which come first where a
+/// curve is planar, has only a value and a step. `value`, `predicted`, `actual` and `gradient` in the
 /// functional's unit (1/length^3 for MVC, 1/length for MEC), `step` and `shift` without one.
 #[repr(C)]
 #[derive(Clone, Copy)]

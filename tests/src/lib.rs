@@ -2,9 +2,11 @@
 //! true planar curves in arc length.
 
 pub mod appendix;
+pub mod bench;
 pub mod ceres;
 pub mod compare;
 pub mod curves;
 pub mod paths;
+pub mod random;
 pub mod toolchain;
 pub mod truth;

@@ -5,9 +5,13 @@
 //! curve by 10 (measured against true curves); counted is a factor of [`HALVING`]. So if a span moves by `d`, its
 //! error was at most `d · HALVING/(HALVING − 1)` and is at most `d / (HALVING − 1)` afterwards. This is an estimate,
 //! not a bound. Only spans that are too far off are divided.
+//!
+//! Of a planar curve through fixed joints the true curve itself is known (see [`super::natural`]): then spans are divided until
+//! the elements along it are as near as they are to be, and their distance is measured.
 
 use super::fairness::{Density, Shape};
 use super::model::{Division, Model};
+use super::natural::TrueCurve;
 use super::passes::Passes;
 use super::start::refine;
 use crate::basis::hermite;
@@ -162,6 +166,50 @@ where
     }
 }
 
+/// Divides spans until elements along the true curve are nearer to it than the tolerance.
+#[expect(clippy::too_many_arguments, reason = "a curve, its true form, what it is to become, and memory")]
+pub(super) fn divide_true<const D: usize>(
+    passes: &mut Passes<'_>,
+    of: &Model<'_, D>,
+    curve: &TrueCurve<'_>,
+    coarse: &Model<'_, D>,
+    coarse_state: &[f64],
+    aim: &Aim,
+    level: &mut Level<'_>,
+    errors: &mut [f64],
+    work: &mut [f64],
+) -> Result<Divided, WorkspaceTooSmall>
+where
+    Shape<D>: Density<D>,
+{
+    let closed = of.curve.closed;
+    level.counts.fill(1.0);
+    loop {
+        level.mark(closed);
+        let nodes = level.nodes(closed);
+        let Level { counts, marks, state } = &mut *level;
+        let mut fine = Model { division: Division::Marked(&marks[..nodes]), ..*of };
+        let state = &mut state[..fine.state_len()];
+        fine.natural_cost =
+            curve.write(coarse, coarse_state, &fine, counts.iter().map(|&count| count as usize), state);
+        fine.guarded = false;
+        let mut outcome = passes.look(&fine, state, work)?;
+        curve.distances(coarse, coarse_state, &fine, counts, state, errors);
+        let mut divided = false;
+        for (count, &error) in counts.iter_mut().zip(errors.iter()) {
+            if !(error <= aim.tolerance) && 2.0 * *count <= aim.most_per_span as f64 {
+                *count *= 2.0;
+                divided = true;
+            }
+        }
+        if !divided {
+            let error = errors.iter().fold(0.0f64, |most, &error| if error > most { error } else { most });
+            outcome.status = if error <= aim.tolerance { Status::Converged } else { Status::Stalled };
+            return Ok(Divided { outcome, error });
+        }
+    }
+}
+
 /// How far each span moved from one solution to a finer one.
 fn compare<const D: usize>(
     coarse: &Model<'_, D>,
@@ -201,7 +249,11 @@ fn at<const D: usize>(rows: &[SVector<f64, D>; 6], t: f64) -> [SVector<f64, D>; 
 }
 
 /// The distance of a point from an element near a parameter, beyond its ends too.
-fn distance<const D: usize>(point: &SVector<f64, D>, rows: &[SVector<f64, D>; 6], near: f64) -> f64 {
+pub(super) fn distance<const D: usize>(
+    point: &SVector<f64, D>,
+    rows: &[SVector<f64, D>; 6],
+    near: f64,
+) -> f64 {
     let mut t = near;
     let mut best = f64::INFINITY;
     for _ in 0..4 {

@@ -120,6 +120,17 @@ impl<const D: usize> Model<'_, D> {
         variation / (length * length * length) + bending / length + tension * length
     }
 
+    /// The functional by its integrals: variation, bending and length.
+    pub(super) fn value_of(&self, [variation, bending, length]: &[f64; 3]) -> f64 {
+        let weights = &self.weights;
+        let own = weights.variation * variation + weights.bending * bending + weights.length * length;
+        match self.functional.length_power() {
+            0 => own,
+            1 => own * length,
+            _ => own * length * length * length,
+        }
+    }
+
     fn joint_number(&self, node: usize) -> Option<usize> {
         match self.division {
             Division::Even(parts) => node.is_multiple_of(parts).then_some(node / parts),
@@ -577,8 +588,7 @@ where
         let by_rows = self.combined(element, first).derivatives(&rows_between(&ends));
         let list = self.local_coordinates(element);
         self.by_unknowns(element, &ends, &list, &by_rows, gradient, second, matrix);
-        let own = if first[1] == 0.0 { by_rows.cost } else { by_rows.cost - first[1] * by_rows.length };
-        [if first[0] == 1.0 { own } else { own / first[0] }, by_rows.length]
+        plain_sums(&by_rows, first)
     }
 
     fn linearise_own(
@@ -587,8 +597,9 @@ where
         state: &[f64],
         first: [f64; 2],
         gradient: &mut [f64],
+        second: &mut [f64],
         matrix: &mut [f64],
-    ) -> Option<f64> {
+    ) -> Option<[f64; 2]> {
         let ends = [self.end(element, 0, state), self.end(element, 1, state)];
         let by_rows = self.combined(element, first).derivatives(&rows_between(&ends));
         // The ends of an open curve belong to one element too.
@@ -606,8 +617,8 @@ where
                 let _ = list.push((1, coordinate));
             });
         }
-        self.by_unknowns(element, &ends, &list, &by_rows, gradient, &mut [], matrix);
-        Some(by_rows.cost)
+        self.by_unknowns(element, &ends, &list, &by_rows, gradient, second, matrix);
+        Some(plain_sums(&by_rows, first))
     }
 
     fn retract(&self, block: usize, from: &[f64], step: &[f64], to: &mut [f64]) {
@@ -713,6 +724,12 @@ where
     fn runs_away(&self, state: &[f64]) -> bool {
         self.rough_length(state) > RUNAWAY * self.start_length
     }
+}
+
+/// The two sums of an element from their combination.
+fn plain_sums<const D: usize>(by_rows: &RowDerivatives<D>, first: [f64; 2]) -> [f64; 2] {
+    let own = if first[1] == 0.0 { by_rows.cost } else { by_rows.cost - first[1] * by_rows.length };
+    [if first[0] == 1.0 { own } else { own / first[0] }, by_rows.length]
 }
 
 /// The logarithms of the speed ratio between an element's first end and its middle in the starts that are tried.

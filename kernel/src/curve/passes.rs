@@ -14,7 +14,7 @@ const RELAXATION: usize = 10;
 /// The penalties, in units of the functional, with which a given length is approached, one after the other.
 const PENALTIES: [f64; 3] = [1e2, 1e4, 1e6];
 /// A length is met to this fraction.
-const LENGTH_MET: f64 = 1e-13;
+const LENGTH_MET: f64 = 1e-10;
 /// More corrections of a length's multiplier than are ever needed.
 const MOST_CORRECTIONS: usize = 12;
 
@@ -28,9 +28,10 @@ pub(super) struct Passes<'a> {
     pub(super) linearisations: usize,
     /// The length that is asked for, in the local unit.
     length: Option<f64>,
-    multiplier: f64,
-    /// See [`Settings::explore_first`].
-    explore_first: bool,
+    /// The tension that belongs to that length, as far as it is known.
+    pub(super) multiplier: f64,
+    /// Whether the observer asked to stop.
+    cancelled: bool,
 }
 
 impl<'a> Passes<'a> {
@@ -50,8 +51,20 @@ impl<'a> Passes<'a> {
             linearisations: 0,
             length,
             multiplier: 0.0,
-            explore_first: false,
+            cancelled: false,
         }
+    }
+
+    /// Notes an iteration of the curve's directions: the functional, in the local unit, and how far it went. Returns whether
+    /// to go on.
+    pub(super) fn note(&mut self, value: f64, step: f64) -> bool {
+        if self.iterations >= self.most {
+            return false;
+        }
+        let control = self.iteration(1, &Record { value, step, ..Record::ZERO });
+        self.iterations += 1;
+        self.cancelled = control == Control::Cancel;
+        !self.cancelled && self.iterations < self.most
     }
 
     /// Two passes. First the shape, with a parametrisation that is kept even: only the shape decides how far a step goes
@@ -69,15 +82,12 @@ impl<'a> Passes<'a> {
         let start_cost = guard(model, state);
         let natural = if start_cost > 0.0 { model.natural_cost.min(start_cost) } else { model.natural_cost };
         model.gauge = natural / model.element_count() as f64;
-        let outcome = self.minimise(model, SHAPING_DECREASE, 0, state, work)?;
+        let outcome = self.minimise(model, SHAPING_DECREASE, [0, 0], state, work)?;
         model.gauge = 0.0;
         if matches!(outcome.status, Status::Cancelled | Status::Unbounded) {
             return Ok(outcome);
         }
-        self.explore_first = true;
-        let outcome = self.finish(model, relative_decrease, state, work);
-        self.explore_first = false;
-        outcome
+        self.finish(model, relative_decrease, state, work)
     }
 
     /// The last pass, from a state that has the right shape already. A given length is met here.
@@ -93,11 +103,11 @@ impl<'a> Passes<'a> {
     {
         guard(model, state);
         let Some(target) = self.length else {
-            return self.minimise(model, relative_decrease, RELAXATION, state, work);
+            return self.minimise(model, relative_decrease, [RELAXATION; 2], state, work);
         };
         // The method of multipliers: value + multiplier (L − target) + ½ penalty (L − target)².
         let mut corrections = 0;
-        let mut stage = if self.multiplier == 0.0 { 0 } else { PENALTIES.len() - 1 };
+        let mut stage = usize::from(self.multiplier != 0.0);
         loop {
             let [value, _] = total(model, state);
             let unit = (value + 1e-3 * model.natural_cost) / (target * target);
@@ -105,8 +115,7 @@ impl<'a> Passes<'a> {
             model.goal = Some(Goal { target, multiplier: self.multiplier, penalty });
             let last = stage + 1 == PENALTIES.len();
             let decrease = if last { relative_decrease } else { 1e-6_f64.max(relative_decrease) };
-            // An element by itself would grow without limit to make a curve longer: none is relaxed.
-            let outcome = self.minimise(model, decrease, 0, state, work)?;
+            let outcome = self.minimise(model, decrease, [RELAXATION; 2], state, work)?;
             model.goal = None;
             let [value, length] = total(model, state);
             let off = length - target;
@@ -122,12 +131,10 @@ impl<'a> Passes<'a> {
         }
     }
 
-    /// One pass, with what is left of the iterations.
-    fn minimise<const D: usize>(
+    /// Relaxes every element by itself and looks at what there is, without a step of the whole.
+    pub(super) fn look<const D: usize>(
         &mut self,
         model: &Model<'_, D>,
-        relative_decrease: f64,
-        relaxation: usize,
         state: &mut [f64],
         work: &mut [f64],
     ) -> Result<Outcome, WorkspaceTooSmall>
@@ -135,16 +142,40 @@ impl<'a> Passes<'a> {
         Shape<D>: Density<D>,
     {
         let settings = Settings {
-            max_iterations: self.most - self.iterations.min(self.most),
+            max_iterations: 0,
+            first_relaxation: RELAXATION,
+            relaxation: RELAXATION,
+            ..Settings::DEFAULT
+        };
+        let outcome = solve::minimise(model, &settings, &InOrder, state, work, &mut [], self)?;
+        self.linearisations += outcome.linearisations;
+        Ok(outcome)
+    }
+
+    /// One pass, with what is left of the iterations and so many relaxations at first and between steps.
+    fn minimise<const D: usize>(
+        &mut self,
+        model: &Model<'_, D>,
+        relative_decrease: f64,
+        [first_relaxation, relaxation]: [usize; 2],
+        state: &mut [f64],
+        work: &mut [f64],
+    ) -> Result<Outcome, WorkspaceTooSmall>
+    where
+        Shape<D>: Density<D>,
+    {
+        let settings = Settings {
+            max_iterations: if self.cancelled { 0 } else { self.most - self.iterations.min(self.most) },
             relative_decrease,
             relaxation,
-            explore_first: self.explore_first,
+            first_relaxation,
             ..Settings::DEFAULT
         };
         let outcome = solve::minimise(model, &settings, &InOrder, state, work, &mut [], self)?;
         self.iterations += outcome.iterations;
         self.linearisations += outcome.linearisations;
-        Ok(outcome)
+        let status = if self.cancelled { Status::Cancelled } else { outcome.status };
+        Ok(Outcome { status, ..outcome })
     }
 }
 

@@ -192,6 +192,9 @@ fn plane_axes(curve: &Curve<'_>, origin: &Vector3<f64>) -> Option<[Vector3<f64>;
         second = unit - first * first.dot(&unit);
     }
     let second = second / libm::sqrt(second.dot(&second));
+    // What is left of a short vector leans back by its rounding: once more.
+    let second = second - first * first.dot(&second);
+    let second = second / libm::sqrt(second.dot(&second));
     let normal = first.cross(&second);
     let mut flat = true;
     vectors(curve, origin, |vector, error| {

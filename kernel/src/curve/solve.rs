@@ -1,6 +1,6 @@
 //! From a designer's data to elements: the three calls *how much*, *here it is*, *solve*.
 
-use super::accuracy::{Aim, Level, divide};
+use super::accuracy::{Aim, Level, divide, divide_true};
 use super::check::{check, check_elements, check_length};
 use super::element::Element;
 use super::error::{CurveError, OptionName};
@@ -182,6 +182,8 @@ struct Layout {
     state: usize,
     /// What a tolerance needs: nodes and spans.
     division: [usize; 2],
+    /// The true curve's.
+    trace: usize,
     work: usize,
 }
 
@@ -198,22 +200,27 @@ impl Layout {
         Self {
             state: model.state_len(),
             division: if options.tolerance > 0.0 { [model.node_count(), spans] } else { [0; 2] },
+            trace: if options.elements_per_span > 1 && D == 2 {
+                natural::trace_len(model.curve.joints.len(), spans, model.curve.closed)
+            } else {
+                0
+            },
             work: solve::workspace_len(model, 1).max(natural),
         }
     }
 
-    /// State, next state, marks, next marks, counts, next counts, errors, work.
-    fn parts(&self) -> [usize; 8] {
+    /// State, next state, marks, next marks, counts, next counts, errors, true curve, work.
+    fn parts(&self) -> [usize; 9] {
         let [nodes, spans] = self.division;
         let next = if nodes > 0 { self.state } else { 0 };
-        [self.state, next, nodes, nodes, spans, spans, spans, self.work]
+        [self.state, next, nodes, nodes, spans, spans, spans, self.trace, self.work]
     }
 
     fn len(&self) -> usize {
         self.parts().iter().sum()
     }
 
-    fn carve<'w>(&self, memory: &'w mut [f64]) -> Result<[&'w mut [f64]; 8], CurveError> {
+    fn carve<'w>(&self, memory: &'w mut [f64]) -> Result<[&'w mut [f64]; 9], CurveError> {
         let (needed, given) = (self.len(), memory.len());
         if given < needed {
             return Err(CurveError::WorkspaceTooSmall { needed, given });
@@ -247,7 +254,7 @@ where
     let elements = elements.get_mut(..count).ok_or(too_short)?;
     let layout = Layout::of(&model, options);
     let given = workspace.len();
-    let [state, next_state, marks, next_marks, counts, next_counts, errors, work] =
+    let [state, next_state, marks, next_marks, counts, next_counts, errors, traced, work] =
         layout.carve(workspace)?;
     let around = layout.len() - layout.work;
     let wrong =
@@ -263,7 +270,10 @@ where
         model.natural_cost = adopt(&model, place, from, state);
         model.start_length = model.rough_length(state);
         if warm {
-            natural::improve(&model, state, work);
+            let tension = natural::improve(&model, length, state, work, &mut |sums, step| {
+                passes.note(model.value_of(sums), step)
+            });
+            passes.multiplier = tension.unwrap_or(0.0);
         }
         if let Some(reference) = &curve.reference {
             model.gauge = reference.weight * model.natural_cost / count as f64;
@@ -280,18 +290,48 @@ where
     let mut coarse = Model { division: Division::Even(1), ..model };
     let coarse_state = &mut state[..coarse.state_len()];
     coarse.natural_cost = Start { model: &coarse, place, parts: 1 }.fill(coarse_state)?;
-    let improved = natural::improve(&coarse, coarse_state, work);
+    let tension = natural::improve(&coarse, length, coarse_state, work, &mut |sums, step| {
+        passes.note(coarse.value_of(sums), step)
+    });
+    passes.multiplier = tension.unwrap_or(0.0);
     coarse.start_length = coarse.rough_length(coarse_state);
     let parts = options.elements_per_span as usize;
+    let aim =
+        Aim { tolerance: options.tolerance / place.unit, most_per_span: parts, relative_decrease: decrease };
+    model.start_length = coarse.start_length;
+    if parts > 1
+        && tension.is_some()
+        && let Some(found) = natural::trace(&coarse, length, coarse_state, traced, &mut |sums, step| {
+            passes.note(coarse.value_of(sums), step)
+        })
+    {
+        if options.tolerance == 0.0 {
+            // The elements' minimum is next to the true one.
+            let kept = &mut work[..coarse_state.len()];
+            kept.copy_from_slice(coarse_state);
+            model.natural_cost =
+                found.write(&coarse, kept, &model, core::iter::repeat_n(parts, curve.spans()), state);
+            let outcome = passes.finish(&mut model, decrease, state, work).map_err(wrong)?;
+            return Ok(hand_over(&model, &outcome, &passes, state, elements, options));
+        }
+        let mut level = Level { counts, marks, state: next_state };
+        let divided =
+            divide_true(&mut passes, &model, &found, &coarse, coarse_state, &aim, &mut level, errors, work)
+                .map_err(wrong)?;
+        let mut model = level.model(&model);
+        model.natural_cost = coarse.natural_cost;
+        let mut report = hand_over(&model, &divided.outcome, &passes, level.state, elements, options);
+        report.error = divided.error * place.unit;
+        return Ok(report);
+    }
     let tolerance =
         if parts == 1 || options.tolerance > 0.0 { decrease } else { COARSE_DECREASE.max(decrease) };
-    let mut outcome = if improved {
+    let mut outcome = if tension.is_some() {
         passes.finish(&mut coarse, tolerance, coarse_state, work)
     } else {
         passes.shape_and_finish(&mut coarse, tolerance, coarse_state, work)
     }
     .map_err(wrong)?;
-    model.start_length = coarse.start_length;
     model.natural_cost = coarse.natural_cost;
     if parts == 1 {
         return Ok(hand_over(&coarse, &outcome, &passes, coarse_state, elements, options));
@@ -316,11 +356,6 @@ where
         current.mark(curve.closed);
         let mut error = f64::INFINITY;
         if outcome.status == Status::Converged {
-            let aim = Aim {
-                tolerance: options.tolerance / place.unit,
-                most_per_span: parts,
-                relative_decrease: decrease,
-            };
             let divided = divide(&mut passes, &model, &aim, outcome, [&mut current, &mut next], errors, work)
                 .map_err(wrong)?;
             (outcome, error) = (divided.outcome, divided.error);

@@ -22,8 +22,8 @@ pub struct Settings {
     /// How many steps each element may take in the blocks that it shares with none, after every step of the whole; 0
     /// for none.
     pub relaxation: usize,
-    /// Whether other starts of those blocks are tried before the first step too, not only at the end.
-    pub explore_first: bool,
+    /// How many such steps each element takes before the first step.
+    pub first_relaxation: usize,
     /// The first radius of the trust region, in natural sizes an element.
     pub first_radius: f64,
 }
@@ -34,7 +34,8 @@ impl Settings {
         max_iterations: 200,
         relative_decrease: 0.0,
         relaxation: 0,
-        explore_first: false,
+        first_relaxation: 0,
+
         first_radius: 1.0,
     };
 }
@@ -158,19 +159,12 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         let explores = self.relaxation > 0 && self.problem.variants() > 0;
         self.work.trial.copy_from_slice(state);
         self.coupled = self.cost();
-        if self.relaxation > 0 {
-            let first = self.coupled.first;
-            let enough = START_ENOUGH * self.coupled.value / self.problem.elements().max(1) as f64;
-            if explores && settings.explore_first {
-                self.linearisations +=
-                    relax::explore(self.problem, &mut self.work, EXPLORATION, first, state);
-                state.copy_from_slice(self.work.best);
-                self.work.trial.copy_from_slice(state);
-            } else {
-                self.linearisations +=
-                    relax::relax(self.problem, &mut self.work, self.relaxation, first, enough);
-                state.copy_from_slice(self.work.trial);
-            }
+        if settings.first_relaxation > 0 {
+            let enough = settings.relative_decrease.min(START_ENOUGH) * self.coupled.value.abs()
+                / self.problem.elements().max(1) as f64;
+            self.linearisations +=
+                relax::relax(self.problem, &mut self.work, settings.first_relaxation, enough);
+            state.copy_from_slice(self.work.trial);
             self.coupled = self.cost();
         }
         let mut value = self.linearise(state);
@@ -268,7 +262,12 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             let actual = value - tried.value;
             let slack = if step.predicted <= 1e3 * floor { floor } else { 0.0 };
             let ratio = tried.value.is_finite().then(|| (actual + slack) / (step.predicted + slack));
+            let before = radius;
             let accepted = radius.judge(ratio, step.length);
+            if near && !accepted {
+                // Below what costs can tell: the last state stands.
+                (radius, polish) = (before, 0);
+            }
             outcome.iterations += 1;
             let record = Record {
                 value: if accepted { tried.value } else { value },
@@ -306,8 +305,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     /// Looks for better minima of the elements' own unknowns beside the present ones; moves there if that lowers the
     /// cost.
     fn hop(&mut self, state: &mut [f64], value: f64) -> bool {
-        let first = self.coupled.first;
-        self.linearisations += relax::explore(self.problem, &mut self.work, EXPLORATION, first, state);
+        self.linearisations += relax::explore(self.problem, &mut self.work, EXPLORATION, state);
         let Workspace { trial, best, .. } = &mut self.work;
         trial.copy_from_slice(best);
         let found = self.cost();
@@ -324,8 +322,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         let Workspace { trial, step, sizes, offset, scratch, .. } = &mut self.work;
         move_by(self.problem, offset, sizes, step, scratch, state, trial);
         if self.relaxation > 0 {
-            self.linearisations +=
-                relax::relax(self.problem, &mut self.work, self.relaxation, self.coupled.first, enough);
+            self.linearisations += relax::relax(self.problem, &mut self.work, self.relaxation, enough);
         }
         self.cost()
     }

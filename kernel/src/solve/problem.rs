@@ -117,17 +117,18 @@ pub trait Problem: Sync {
         [self.linearise(element, state, gradient, matrix), 0.0]
     }
 
-    /// As [`Problem::linearise_sums`] by those unknowns alone that the element shares with no other, in their order;
-    /// returns the combination's value. `None` where the problem has no faster way than leaving out the rest.
+    /// As [`Problem::linearise_sums`] by those unknowns alone that the element shares with no other, in their order.
+    /// `None` where the problem has no faster way than leaving out the rest.
     fn linearise_own(
         &self,
         element: usize,
         state: &[f64],
         first: [f64; 2],
         gradient: &mut [f64],
+        second: &mut [f64],
         matrix: &mut [f64],
-    ) -> Option<f64> {
-        let _ = (element, state, first, gradient, matrix);
+    ) -> Option<[f64; 2]> {
+        let _ = (element, state, first, gradient, second, matrix);
         None
     }
 

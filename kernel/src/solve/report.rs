@@ -55,7 +55,8 @@ impl Status {
     }
 }
 
-/// What one iteration did. An iteration is one trial step, accepted or not.
+/// What one iteration did. An iteration is one trial step, accepted or not; one on a curve's directions alone, which come
+/// first where a curve is planar, has only a value and a step.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Record {

@@ -75,7 +75,7 @@ impl Layout {
             slot * slots,
             local, // rows of a dense local matrix: first
             local, // rows of a dense local matrix: start
-            packed_len(local) * 2 + 5 * local,
+            packed_len(local) * 2 + 6 * local,
             coupled, // gradient of the first sum
             coupled, // gradient of the second sum
             coupled, // both divided by the matrix
