@@ -230,7 +230,8 @@ typedef struct minvar_options {
     uint32_t functional;
     // Elements between two joints, 1 to 1024 (thesis 4.6). More approach the true curve. Default 1.
     uint32_t elements_per_span;
-    // Gauss-Lobatto points an element, 12 to 32. Fewer than 20 can be cheated by an optimiser. Default 32.
+    // Gauss-Lobatto points an element, 12 to 32; 0 takes 16 as long as no more are needed and 32 where they tell a
+    // difference. Default 0.
     uint32_t quadrature_points;
     // The largest number of iterations (trial steps). Default 500.
     uint32_t max_iterations;

@@ -114,7 +114,8 @@ pub struct minvar_options {
     pub functional: u32,
     /// Elements between two joints, 1 to 1024 (thesis 4.6). More approach the true curve. Default 1.
     pub elements_per_span: u32,
-    /// Gauss-Lobatto points an element, 12 to 32. Fewer than 20 can be cheated by an optimiser. Default 32.
+    /// Gauss-Lobatto points an element, 12 to 32; 0 takes 16 as long as no more are needed and 32 where they tell a
+    /// difference. Default 0.
     pub quadrature_points: u32,
     /// The largest number of iterations (trial steps). Default 500.
     pub max_iterations: u32,

@@ -324,7 +324,7 @@ fn options_out_of_range_are_refused_and_those_in_range_are_not() {
     for elements_per_span in [0, 1025, u32::MAX] {
         bad(Options { elements_per_span, ..base }, OptionName::ElementsPerSpan, "elements_per_span");
     }
-    for quadrature_points in [0, 1, 2, 11, 33, u32::MAX] {
+    for quadrature_points in [1, 2, 11, 33, u32::MAX] {
         bad(Options { quadrature_points, ..base }, OptionName::QuadraturePoints, "quadrature_points");
     }
     for dimension in [1, 4, u32::MAX] {
@@ -334,6 +334,7 @@ fn options_out_of_range_are_refused_and_those_in_range_are_not() {
         bad(Options { relative_decrease, ..base }, OptionName::RelativeDecrease, "relative_decrease");
     }
     for options in [
+        Options { quadrature_points: 0, ..base },
         Options { quadrature_points: 12, ..base },
         Options { quadrature_points: 32, ..base },
         Options { relative_decrease: 0.0, ..base },

@@ -62,7 +62,7 @@ impl OptionName {
                 "functional: must be MVC (0), MEC (1), scale-invariant MVC (2) or MEC (3), space MVC (4) or MEC (5)"
             }
             Self::ElementsPerSpan => "elements_per_span: must be from 1 to 1024",
-            Self::QuadraturePoints => "quadrature_points: must be from 12 to 32",
+            Self::QuadraturePoints => "quadrature_points: must be 0 (as many as needed) or from 12 to 32",
             Self::Dimension => {
                 "dimension: must be 0 (found from the data), 2 (the data must lie in a plane) or 3"
             }

@@ -8,10 +8,10 @@
 use super::end::{Coordinate, End, SideStep, row_of, rows_between};
 use super::fairness::{Density, Shape};
 use super::functional::{Functional, Weights};
+use super::guard::Guard;
 use super::joint::{Continuity, Curve, Given, Joint};
 use super::placement::Placement;
 use super::rows::{Integrand, Mirrored, RowDerivatives};
-use crate::basis::lanes::Lanes;
 use crate::basis::mirrored::{pair_count, pairs};
 use crate::solve::{BlockList, Coupled, Problem, packed};
 use core::ops::Range;
@@ -80,6 +80,8 @@ pub(super) struct Model<'a, const D: usize> {
     pub(super) goal: Option<Goal>,
     /// Gauss–Lobatto points an element.
     pub(super) points: usize,
+    /// Whether more points are taken where they tell a difference.
+    pub(super) chooses_points: bool,
     /// Weight of the evenness of the parametrisation.
     pub(super) gauge: f64,
     /// Whether a curve that turns by more than a right angle between two points of the rule is outside the domain:
@@ -400,8 +402,7 @@ where
 
     /// What an element costs by its rows, and its length; infinite outside the domain.
     pub(super) fn sums_of_rows(&self, element: usize, rows: &[SVector<f64, D>; 6]) -> [f64; 2] {
-        let mut guard =
-            Guard { pairs: if self.guarded { pair_count(self.points) } else { 0 }, ..Guard::new() };
+        let mut guard = Guard::of(if self.guarded { pair_count(self.points) } else { 0 });
         let sums = self.integrand(element).value(rows, |first| guard.pass(first));
         if guard.ends_well() { sums } else { [f64::INFINITY; 2] }
     }
@@ -409,50 +410,6 @@ where
     /// What an element costs by its rows; infinite outside the domain.
     pub(super) fn cost_of_rows(&self, element: usize, rows: &[SVector<f64, D>; 6]) -> f64 {
         self.sums_of_rows(element, rows)[0]
-    }
-}
-
-/// Watches the direction of a curve from either end inwards: it must turn by less than a right angle from each point of
-/// the rule to the next.
-struct Guard<const D: usize> {
-    /// The pairs of points that are still to come.
-    pairs: usize,
-    last: Option<[[f64; D]; 2]>,
-    good: bool,
-}
-
-impl<const D: usize> Guard<D> {
-    const fn new() -> Self {
-        Self { pairs: 0, last: None, good: true }
-    }
-
-    #[inline]
-    fn forward(a: &[f64; D], b: &[f64; D]) -> bool {
-        let mut sum = 0.0;
-        for d in 0..D {
-            sum += a[d] * b[d];
-        }
-        sum > 0.0
-    }
-
-    #[inline]
-    fn pass(&mut self, first: &[[Lanes; D]; 2]) {
-        for lane in 0..crate::basis::lanes::WIDTH {
-            if self.pairs == 0 {
-                return;
-            }
-            self.pairs -= 1;
-            let here = first.map(|side| side.map(|x| x.0[lane]));
-            if let Some(last) = &self.last {
-                self.good &= Self::forward(&last[0], &here[0]) && Self::forward(&last[1], &here[1]);
-            }
-            self.last = Some(here);
-        }
-    }
-
-    /// The two innermost points are neighbours too.
-    fn ends_well(&self) -> bool {
-        self.good && self.last.is_none_or(|last| Self::forward(&last[0], &last[1]))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::fairness::{Density, Shape};
 use super::model::{Goal, Model};
+use crate::basis::quadrature::MAX_POINTS;
 use crate::solve::{
     self, Control, InOrder, Observer, Outcome, Problem, Record, Settings, Status, WorkspaceTooSmall,
 };
@@ -10,6 +11,13 @@ use crate::solve::{
 const SHAPING_DECREASE: f64 = 1e-1;
 /// Steps of each element by itself between two of the whole curve.
 const RELAXATION: usize = 10;
+
+/// Points of the rule that most of the work is done with.
+pub(super) const WORKING_POINTS: usize = 16;
+/// A functional that is wanted no better than to this fraction is not minimised with a finer rule if that agrees.
+const LOOSE: f64 = 1e-9;
+/// With few points a functional is minimised to this fraction before it is with many.
+const WORKING_DECREASE: f64 = 1e-7;
 
 /// The penalties, in units of the functional, with which a given length is approached, one after the other.
 const PENALTIES: [f64; 3] = [1e2, 1e4, 1e6];
@@ -102,6 +110,32 @@ impl<'a> Passes<'a> {
         Shape<D>: Density<D>,
     {
         guard(model, state);
+        if !model.chooses_points {
+            return self.finish_with(model, relative_decrease, state, work);
+        }
+        model.points = WORKING_POINTS;
+        let outcome = self.finish_with(model, relative_decrease.max(WORKING_DECREASE), state, work)?;
+        model.points = MAX_POINTS;
+        let value = guard(model, state);
+        let agrees = (value - outcome.value).abs() <= relative_decrease * (value + 1e-9 * model.natural_cost);
+        let stopped = matches!(outcome.status, Status::Cancelled | Status::Unbounded);
+        if stopped || (relative_decrease > LOOSE && agrees) {
+            return Ok(Outcome { value: model.couple(total(model, state)).value, ..outcome });
+        }
+        self.finish_with(model, relative_decrease, state, work)
+    }
+
+    /// The last pass with the model's rule.
+    fn finish_with<const D: usize>(
+        &mut self,
+        model: &mut Model<'_, D>,
+        relative_decrease: f64,
+        state: &mut [f64],
+        work: &mut [f64],
+    ) -> Result<Outcome, WorkspaceTooSmall>
+    where
+        Shape<D>: Density<D>,
+    {
         let Some(target) = self.length else {
             return self.minimise(model, relative_decrease, [RELAXATION; 2], state, work);
         };
@@ -141,6 +175,7 @@ impl<'a> Passes<'a> {
     where
         Shape<D>: Density<D>,
     {
+        let model = &Model { points: if model.chooses_points { MAX_POINTS } else { model.points }, ..*model };
         let settings = Settings {
             max_iterations: 0,
             first_relaxation: RELAXATION,

@@ -42,7 +42,7 @@ impl<const D: usize> Mirrored<D> {
 
     /// `C', C'', C'''` at points `t`, and `C', −C'', C'''` at `1 − t`.
     #[inline(always)]
-    fn at(&self, pairs: &Pairs) -> [[[Lanes; D]; 3]; 2] {
+    pub(super) fn at(&self, pairs: &Pairs) -> [[[Lanes; D]; 3]; 2] {
         let mut out = [[[Lanes::ZERO; D]; 3]; 2];
         for k in 0..3 {
             let by = &pairs.by[k];
@@ -73,10 +73,6 @@ impl<const D: usize> Integrand<D>
 where
     Shape<D>: Density<D>,
 {
-    pub(super) const fn plain(weights: Weights, rule: &'static [Pairs]) -> Self {
-        Self { weights, gauge: 0.0, rule, reference: None }
-    }
-
     /// What `db/ds` and the quickening are to be at points `t` and `1 − t`.
     #[inline(always)]
     fn targets(&self, pairs: &Pairs) -> ([Normal; 2], [Lanes; 2]) {

@@ -5,21 +5,17 @@ use super::check::{check, check_elements, check_length};
 use super::element::Element;
 use super::error::{CurveError, OptionName};
 use super::fairness::{Density, Shape};
+use super::figures::Figures;
 use super::functional::{Functional, Weights};
 use super::joint::{Curve, Given};
-use super::measure;
 use super::model::{Division, Goal, Model};
 use super::natural;
 use super::options::Options;
-use super::passes::Passes;
+use super::passes::{self, Passes};
 use super::placement::{Place, Placement};
-use super::rows::derivatives;
 use super::start::{Start, adopt, refine};
-use crate::basis::hermite;
 use crate::basis::quadrature::MAX_POINTS;
 use crate::solve::{self, Observer, Outcome, Problem, Record, Status, WorkspaceTooSmall};
-use nalgebra::SVector;
-
 /// How a curve came out. All figures in the caller's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
@@ -167,7 +163,11 @@ fn model<'a, const D: usize>(curve: &Curve<'a>, options: &Options, place: &Place
         place: *place,
         division: Division::Even(options.elements_per_span as usize),
         functional: options.functional,
-        points: options.quadrature_points as usize,
+        points: match options.quadrature_points {
+            0 => passes::WORKING_POINTS,
+            points => points as usize,
+        },
+        chooses_points: options.quadrature_points == 0,
         weights: Weights { bending: own.bending + bending, length, ..own },
         goal: None,
         gauge: 0.0,
@@ -337,8 +337,8 @@ where
         return Ok(hand_over(&coarse, &outcome, &passes, coarse_state, elements, options));
     }
     let stopped = matches!(outcome.status, Status::Cancelled | Status::IterationLimit);
-    let found = (stopped || outcome.status == Status::Converged)
-        && is_regular((0..coarse.element_count()).map(|element| coarse.rows(element, coarse_state)));
+    let found =
+        (stopped || outcome.status == Status::Converged) && figures_of(&coarse, coarse_state).irregular == 0;
 
     if options.tolerance > 0.0 {
         let mut base = 1;
@@ -380,6 +380,15 @@ where
     Ok(hand_over(&model, &outcome, &passes, state, elements, options))
 }
 
+fn figures_of<const D: usize>(model: &Model<'_, D>, state: &[f64]) -> Figures
+where
+    Shape<D>: Density<D>,
+{
+    let mut figures = Figures::default();
+    (0..model.element_count()).for_each(|element| figures.add(&model.rows(element, state)));
+    figures
+}
+
 /// Writes the elements, and says what they are worth.
 fn hand_over<const D: usize>(
     model: &Model<'_, D>,
@@ -399,43 +408,24 @@ where
     }
     let outcome =
         Outcome { iterations: passes.iterations, linearisations: passes.linearisations, ..*outcome };
-    let mut report = report(model, &outcome, elements, options);
+    let figures = figures_of(model, state);
+    let mut report = report(model, &outcome, elements, &figures, options);
     if report.status == Status::Converged {
-        let regular = is_regular((0..count).map(|element| model.rows(element, state)));
+        let regular = figures.irregular == 0;
         let natural = model.natural_cost() * functional_scale(options, model.place.unit);
         let trusted =
             (report.fine_value - report.value).abs() <= TRUSTED * (report.value + NOTHING * natural);
+        let growth = model.rough_length(state) / model.start_length;
+        let grown = growth > SUSPECT_GROWTH;
         if !(regular && trusted) {
             // What was minimised is not what the elements are: no minimum was found.
-            let grown = model.rough_length(state) > SUSPECT_GROWTH * model.start_length;
             report.status = if grown { Status::Unbounded } else { Status::Stalled };
+        } else if growth > GREAT_GROWTH || (grown && !outcome.decrement.is_finite()) {
+            // A loop on its way to infinity costs next to nothing beside the rest of the curve.
+            report.status = Status::Unbounded;
         }
     }
     report
-}
-
-/// Whether no element has a cusp or stops: its direction changes by less than a right angle, and its speed by less than
-/// a factor of a hundred, between 65 places.
-fn is_regular<const D: usize>(elements: impl Iterator<Item = [SVector<f64, D>; 6]>) -> bool {
-    for rows in elements {
-        let mut before: Option<SVector<f64, D>> = None;
-        for k in 0..=64 {
-            let [first, _, _] = derivatives(&rows, &hermite::basis(f64::from(k) / 64.0));
-            let square = first.dot(&first);
-            if !(square > 0.0) {
-                return false;
-            }
-            if let Some(last) = before {
-                let last_square = last.dot(&last);
-                let (least, most) = (square.min(last_square), square.max(last_square));
-                if !(last.dot(&first) > 0.0) || least < 1e-4 * most {
-                    return false;
-                }
-            }
-            before = Some(first);
-        }
-    }
-    true
 }
 
 /// What a functional's value in the local system is multiplied by to be in the caller's.
@@ -457,6 +447,8 @@ const TRUSTED: f64 = 1e-4;
 const NOTHING: f64 = 1e-9;
 /// A curve that is wrong, and grew by more than this from its start, was on its way to infinity.
 const SUSPECT_GROWTH: f64 = 10.0;
+/// No curve with a minimum grows by more than this.
+const GREAT_GROWTH: f64 = 50.0;
 
 /// An element in the caller's system, fixed positions to the last bit.
 fn world_element<const D: usize>(model: &Model<'_, D>, index: usize, state: &[f64]) -> Element
@@ -482,14 +474,17 @@ fn report<const D: usize>(
     model: &Model<'_, D>,
     outcome: &Outcome,
     elements: &[Element],
+    figures: &Figures,
     options: &Options,
 ) -> Report
 where
     Shape<D>: Density<D>,
 {
     let scale = functional_scale(options, model.place.unit);
-    let (variation, bending) = (measure::variation(elements), measure::bending(elements));
-    let length = measure::length(elements);
+    // Of the local elements: the caller's are rounded where they lie far from the origin.
+    let unit = model.place.unit;
+    let (variation, bending, length) =
+        (figures.variation / unit / unit / unit, figures.bending / unit, figures.length * unit);
     let plain = if options.functional.bends() {
         bending * (1.0 + options.bending)
     } else {
@@ -530,27 +525,12 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::basis::hermite;
     use crate::curve::joint::{Joint, Quantity};
+    use nalgebra::SVector;
 
     fn row(x: f64, y: f64) -> SVector<f64, 2> {
         SVector::from([x, y])
-    }
-
-    /// From the origin to (1, 0) with these speeds and no bend at the ends.
-    fn straight(first: f64, last: f64) -> [SVector<f64, 2>; 6] {
-        [row(0.0, 0.0), row(first, 0.0), row(0.0, 0.0), row(0.0, 0.0), row(last, 0.0), row(1.0, 0.0)]
-    }
-
-    #[test]
-    fn folds_and_stops_are_irregular() {
-        assert!(is_regular([straight(1.0, 1.0), straight(0.5, 1.2)].into_iter()));
-        assert!(!is_regular([straight(1.0, 1.0), straight(-1.0, -1.0)].into_iter()), "a fold");
-        assert!(!is_regular([straight(0.0, 1.0)].into_iter()), "a start without speed");
-        assert!(!is_regular([straight(f64::NAN, 1.0)].into_iter()), "no number");
-        let mut sharp = straight(1.0, 1.0);
-        sharp[4] = row(1e-6, 0.0);
-        sharp[3] = row(0.0, 1.0);
-        assert!(!is_regular([sharp].into_iter()), "an end that nearly stops");
     }
 
     #[test]

@@ -99,8 +99,8 @@ const ZERO_COST: f64 = 1e-3;
 /// A cost below this part of what is natural is rounding: no step can be judged any more.
 pub(super) const NO_COST: f64 = 1e-20;
 
-/// Before the first step elements are relaxed until one promises less than this fraction of its share.
-const START_ENOUGH: f64 = 1e-9;
+/// Before the first step elements are relaxed until one promises less than this part of the tolerance.
+const ENOUGH: f64 = 0.1;
 /// How often other starts of the elements' own unknowns may lead to a better minimum.
 const MOST_EXPLORATIONS: usize = 3;
 /// How many steps every element takes from each of its starts.
@@ -160,7 +160,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         self.work.trial.copy_from_slice(state);
         self.coupled = self.cost();
         if settings.first_relaxation > 0 {
-            let enough = settings.relative_decrease.min(START_ENOUGH) * self.coupled.value.abs()
+            let enough = ENOUGH * settings.relative_decrease * self.coupled.value.abs()
                 / self.problem.elements().max(1) as f64;
             self.linearisations +=
                 relax::relax(self.problem, &mut self.work, settings.first_relaxation, enough);

@@ -85,6 +85,9 @@ pub(crate) trait Density<const D: usize> {
     /// The density times its weights, not finite where the curve is irregular, and the length's plain; no derivatives.
     fn value(weights: &Weighted, target: &Normal, d: &[[Lanes; D]; 3]) -> Local<D>;
 
+    /// The densities of variation, bending and length.
+    fn integrals(d: &[[Lanes; D]; 3]) -> [Lanes; 3];
+
     /// The density with its derivatives.
     fn derivatives(weights: &Weighted, target: &Normal, d: &[[Lanes; D]; 3]) -> Local<D>;
 }

@@ -46,6 +46,13 @@ impl Density<2> for Shape<2> {
     }
 
     #[inline(always)]
+    fn integrals(d: &[[Lanes; 2]; 3]) -> [Lanes; 3] {
+        let s = scalars(d);
+        let powers = Powers::of(s.p);
+        [s.n * s.n * powers.eleventh, s.u * s.u * powers.fifth, powers.speed]
+    }
+
+    #[inline(always)]
     fn derivatives(weights: &Weighted, target: &Normal, d: &[[Lanes; 2]; 3]) -> Local<2> {
         let [[a, b], [c, dd], [e, f]] = *d;
         let Scalars { p, q, u, v, n } = scalars(d);

@@ -118,6 +118,13 @@ impl Density<3> for Shape<3> {
     }
 
     #[inline(always)]
+    fn integrals(d: &[Vector; 3]) -> [Lanes; 3] {
+        let s = products(d);
+        let powers = Powers::of(s.p);
+        [dot(&s.n, &s.n) * powers.eleventh, dot(&s.u, &s.u) * powers.fifth, powers.speed]
+    }
+
+    #[inline(always)]
     fn derivatives(weights: &Weighted, target: &Vector, d: &[Vector; 3]) -> Local<3> {
         let [d1, d2, d3] = d;
         let Products { p, q, u, v, n } = products(d);

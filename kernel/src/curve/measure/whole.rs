@@ -6,11 +6,8 @@ use super::{
 };
 use crate::basis::bernstein::Bernstein;
 use crate::basis::hermite;
-use crate::basis::mirrored::pairs;
-use crate::basis::quadrature::MAX_POINTS;
 use crate::curve::element::Element;
-use crate::curve::functional::Weights;
-use crate::curve::rows::{Integrand, combine};
+use crate::curve::figures::Figures;
 use nalgebra::Vector3;
 
 /// The length of a chain: 32-point Gauss–Lobatto an element, which is exact to rounding for elements without near
@@ -24,41 +21,30 @@ pub fn length(elements: &[Element]) -> f64 {
     sum
 }
 
-/// The two halves of an element.
-fn halves(rows: &[Vector3<f64>; 6]) -> [[Vector3<f64>; 6]; 2] {
-    let basis = hermite::basis(0.5);
-    let [p, v, a] = [0, 1, 2].map(|order: usize| combine(rows, &basis[order]));
-    // A half's parameter runs half as fast: C' halves, C'' is quartered.
-    let half =
-        |p0, v0, a0, a1, v1, p1| -> [Vector3<f64>; 6] { [p0, v0 * 0.5, a0 * 0.25, a1 * 0.25, v1 * 0.5, p1] };
-    [half(rows[0], rows[1], rows[2], a, v, p), half(p, v, a, rows[3], rows[4], rows[5])]
-}
-
-fn total(weights: Weights, elements: &[Element]) -> f64 {
-    let integrand = Integrand::<3>::plain(weights, pairs(MAX_POINTS));
-    let mut sum = 0.0;
+/// The figures of every element in its own unit, and that unit.
+fn figures(elements: &[Element], mut visit: impl FnMut(Figures, f64)) {
     for element in elements {
         let (rows, unit) = normalised(element);
-        // Each half by itself: finer than any rule that a curve is minimised with.
-        let mut value = 0.0;
-        for half in halves(&rows) {
-            value += integrand.value(&half, |_| {})[0];
-        }
-        sum += if weights.bending != 0.0 { value / unit } else { value / unit / unit / unit };
+        let mut figures = Figures::default();
+        figures.add(&rows);
+        visit(figures, unit);
     }
-    sum
 }
 
 /// The variation of curvature `V = ∫ |dκ/ds|² ds` of a chain, with `κ` the binormal curvature vector (thesis 4.2), by
 /// 32-point Gauss–Lobatto over each half of every element; 1/length³. What happens between elements (a jump of curvature at a G1 joint) does not count.
 pub fn variation(elements: &[Element]) -> f64 {
-    total(Weights::VARIATION, elements)
+    let mut sum = 0.0;
+    figures(elements, |own, unit| sum += own.variation / unit / unit / unit);
+    sum
 }
 
 /// The bending energy `E = ∫ κ² ds` of a chain (thesis 4.1), by 32-point Gauss–Lobatto over each half of every
 /// element; 1/length.
 pub fn bending(elements: &[Element]) -> f64 {
-    total(Weights::BENDING, elements)
+    let mut sum = 0.0;
+    figures(elements, |own, unit| sum += own.bending / unit);
+    sum
 }
 
 fn cross(a: &[Bernstein; 3], b: &[Bernstein; 3]) -> [Bernstein; 3] {
