@@ -86,6 +86,10 @@ typedef enum minvar_code {
     MINVAR_WRONG_ELEMENT_COUNT = 27,
     // An element of the reference shape or of the start is not finite or has no direction at an end. `index`: the element.
     MINVAR_BAD_REFERENCE = 28,
+    // An obstacle has a number that is not finite, a negative clearance or an unknown side. `index`: the obstacle.
+    MINVAR_BAD_OBSTACLE = 29,
+    // Obstacles need a planar curve, without a tolerance, a reference shape, a given length or a warm start.
+    MINVAR_OBSTACLES_NOT_POSSIBLE = 30,
     // There are no elements.
     MINVAR_NO_ELEMENTS = 40,
     // A number of an element is NaN, infinite or (in paths) beyond 1e100. `index`: the element.
@@ -281,6 +285,22 @@ typedef struct minvar_joint {
     double guide[3];
 } minvar_joint;
 
+// A point or a segment that a planar curve must leave on one side, at a distance.
+//
+// Where the curve would come too near it gets a contact: a place between two elements that rolls around the obstacle's
+// end, or slides along the segment, at just that distance; position, tangent and curvature are continuous there. Contacts
+// are taken up and given up one by one (an active set) until nothing is too near and every contact pushes.
+typedef struct minvar_obstacle {
+    // One end of the segment.
+    double from[3];
+    // The other; the same for a point.
+    double to[3];
+    // The distance that is kept, 0 or more.
+    double clearance;
+    // One of enum minvar_side: the side of the curve on which the obstacle stays.
+    uint32_t side;
+} minvar_obstacle;
+
 // The designer's data: joints in order along the curve, owned by the caller, only read, and only while a call lasts.
 typedef struct minvar_curve {
     // The joints; at least two, three of a closed curve.
@@ -299,6 +319,10 @@ typedef struct minvar_curve {
     size_t reference_count;
     // The weight w of the reference, 0 to 1.
     double reference_weight;
+    // What a planar curve must keep clear of, or NULL; not with a reference, a tolerance, a given length or an update.
+    const struct minvar_obstacle *obstacles;
+    // How many; 0 without.
+    size_t obstacle_count;
 } minvar_curve;
 
 // What one iteration did: one trial step, accepted or not; one on a curve's directions alone, which come first where a
@@ -551,11 +575,14 @@ struct minvar_joint minvar_joint_with_curvature(struct minvar_joint joint,
 // The same joint with another continuity: one of enum minvar_continuity.
 struct minvar_joint minvar_joint_with_continuity(struct minvar_joint joint, uint32_t continuity);
 
-// The curve through `joint_count` joints, without a reference shape; `closed` as in minvar_curve. The joints stay the
+// The curve through `joint_count` joints, without a reference shape or obstacles; `closed` as in minvar_curve. The joints stay the
 // caller's.
-struct minvar_curve minvar_curve_through(const struct minvar_joint *joints, size_t joint_count, int32_t closed);
+struct minvar_curve minvar_curve_through(const struct minvar_joint *joints,
+                                         size_t joint_count,
+                                         int32_t closed);
 
-// The number of elements that a curve will have, or with a tolerance the most that it may have: spans times `elements_per_span`, with one span fewer than joints of
+// The number of elements that a curve will have, or with a tolerance or obstacles the most that it may have (an obstacle
+// counts as four spans): spans times `elements_per_span`, with one span fewer than joints of
 // an open curve and as many as joints of a closed one. Data and options are not checked otherwise; 0 if a pointer is
 // NULL or misaligned.
 size_t minvar_curve_elements_len(const struct minvar_curve *curve,
@@ -584,7 +611,7 @@ enum minvar_code minvar_curve_workspace_len(const struct minvar_curve *curve,
 // A curve that did not converge is no error: `report->status` says how the computation ended, and elements and report
 // hold the best curve that was found.
 //
-// Errors: MINVAR_TOO_FEW_JOINTS to MINVAR_BAD_REFERENCE, whatever is wrong with data, options or memory. All are
+// Errors: MINVAR_TOO_FEW_JOINTS to MINVAR_OBSTACLES_NOT_POSSIBLE, whatever is wrong with data, options or memory. All are
 // found before any work: elements, records and report are untouched then.
 enum minvar_code minvar_curve_solve(const struct minvar_curve *curve,
                                     const struct minvar_options *options,

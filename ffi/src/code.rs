@@ -59,6 +59,10 @@ pub enum minvar_code {
     MINVAR_WRONG_ELEMENT_COUNT = 27,
     /// An element of the reference shape or of the start is not finite or has no direction at an end. `index`: the element.
     MINVAR_BAD_REFERENCE = 28,
+    /// An obstacle has a number that is not finite, a negative clearance or an unknown side. `index`: the obstacle.
+    MINVAR_BAD_OBSTACLE = 29,
+    /// Obstacles need a planar curve, without a tolerance, a reference shape, a given length or a warm start.
+    MINVAR_OBSTACLES_NOT_POSSIBLE = 30,
     /// There are no elements.
     MINVAR_NO_ELEMENTS = 40,
     /// A number of an element is NaN, infinite or (in paths) beyond 1e100. `index`: the element.
@@ -278,6 +282,8 @@ impl From<&CurveError> for Verdict {
             CurveError::WrongElementCount { needed, given } => {
                 Self::short(MINVAR_WRONG_ELEMENT_COUNT, needed, given)
             }
+            CurveError::BadObstacle { obstacle } => Self::at(MINVAR_BAD_OBSTACLE, obstacle),
+            CurveError::ObstaclesNotPossible => Self::new(MINVAR_OBSTACLES_NOT_POSSIBLE),
             CurveError::BadElement { element } => Self::at(MINVAR_BAD_REFERENCE, element),
             CurveError::WorkspaceTooSmall { needed, given } => {
                 Self::short(MINVAR_WORKSPACE_TOO_SMALL, needed, given)

@@ -3,7 +3,9 @@
 use crate::code::{Failure, answer, minvar_code, minvar_error, minvar_status};
 use crate::raw::{Output, array, array_mut, reference};
 use core::ffi::c_void;
-use kernel::curve::{self, Curve, CurveError, Element, Functional, Joint, Options, Reference, Report};
+use kernel::curve::{
+    self, Curve, CurveError, Element, Functional, Joint, Obstacle, Options, Reference, Report,
+};
 use kernel::solve::{Control, Observer, Record};
 
 /// Whether a quantity is the solver's to choose.
@@ -84,6 +86,35 @@ pub struct minvar_joint {
     pub guide: [f64; 3],
 }
 
+/// A side of a curve, seen in the direction in which it runs.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub enum minvar_side {
+    /// The obstacle lies to the left of the curve: about the plane's normal, which is +z, +x or +y where the data lie in a
+    /// coordinate plane.
+    MINVAR_LEFT = 0,
+    /// The obstacle lies to the right of the curve.
+    MINVAR_RIGHT = 1,
+}
+
+/// A point or a segment that a planar curve must leave on one side, at a distance.
+///
+/// Where the curve would come too near it gets a contact: a place between two elements that rolls around the obstacle's
+/// end, or slides along the segment, at just that distance; position, tangent and curvature are continuous there. Contacts
+/// are taken up and given up one by one (an active set) until nothing is too near and every contact pushes.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct minvar_obstacle {
+    /// One end of the segment.
+    pub from: [f64; 3],
+    /// The other; the same for a point.
+    pub to: [f64; 3],
+    /// The distance that is kept, 0 or more.
+    pub clearance: f64,
+    /// One of enum minvar_side: the side of the curve on which the obstacle stays.
+    pub side: u32,
+}
+
 /// The designer's data: joints in order along the curve, owned by the caller, only read, and only while a call lasts.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -104,6 +135,10 @@ pub struct minvar_curve {
     pub reference_count: usize,
     /// The weight w of the reference, 0 to 1.
     pub reference_weight: f64,
+    /// What a planar curve must keep clear of, or NULL; not with a reference, a tolerance, a given length or an update.
+    pub obstacles: *const minvar_obstacle,
+    /// How many; 0 without.
+    pub obstacle_count: usize,
 }
 
 /// The options of a curve: start from minvar_options_defaults().
@@ -224,6 +259,7 @@ same_layout!(minvar_quantity = curve::Quantity { given = given, value = value })
 same_layout!(minvar_joint = Joint {
     continuity = continuity, position = position, tangent = tangent, curvature = curvature, guide = guide
 });
+same_layout!(minvar_obstacle = Obstacle { from = from, to = to, clearance = clearance, side = side });
 same_layout!(minvar_element = Element { rows = rows });
 same_layout!(minvar_record = Record {
     value = value, predicted = predicted, actual = actual, gradient = gradient, step = step, shift = shift
@@ -238,7 +274,12 @@ unsafe fn view<'a>(curve: *const minvar_curve) -> Result<Curve<'a>, Failure> {
     let data = unsafe { reference(curve, "curve")? };
     // SAFETY: promised by the caller; the layouts are the same, and the kernel's joint is numbers without invalid values.
     let joints = unsafe { array(data.joints.cast::<Joint>(), data.joint_count, "curve->joints")? };
-    let curve = Curve::new(joints, data.closed != 0);
+    let mut curve = Curve::new(joints, data.closed != 0);
+    if !(data.obstacles.is_null() && data.obstacle_count == 0) {
+        // SAFETY: as above.
+        curve.obstacles =
+            unsafe { array(data.obstacles.cast::<Obstacle>(), data.obstacle_count, "curve->obstacles")? };
+    }
     if data.reference.is_null() && data.reference_count == 0 {
         return Ok(curve);
     }
@@ -365,7 +406,7 @@ pub extern "C" fn minvar_joint_with_continuity(joint: minvar_joint, continuity: 
     minvar_joint { continuity, ..joint }
 }
 
-/// The curve through `joint_count` joints, without a reference shape; `closed` as in minvar_curve. The joints stay the
+/// The curve through `joint_count` joints, without a reference shape or obstacles; `closed` as in minvar_curve. The joints stay the
 /// caller's.
 #[unsafe(no_mangle)]
 pub extern "C" fn minvar_curve_through(
@@ -380,10 +421,13 @@ pub extern "C" fn minvar_curve_through(
         reference: core::ptr::null(),
         reference_count: 0,
         reference_weight: 0.0,
+        obstacles: core::ptr::null(),
+        obstacle_count: 0,
     }
 }
 
-/// The number of elements that a curve will have, or with a tolerance the most that it may have: spans times `elements_per_span`, with one span fewer than joints of
+/// The number of elements that a curve will have, or with a tolerance or obstacles the most that it may have (an obstacle
+/// counts as four spans): spans times `elements_per_span`, with one span fewer than joints of
 /// an open curve and as many as joints of a closed one. Data and options are not checked otherwise; 0 if a pointer is
 /// NULL or misaligned.
 #[unsafe(no_mangle)]
@@ -469,7 +513,7 @@ fn report_of(found: &Report) -> minvar_report {
 /// A curve that did not converge is no error: `report->status` says how the computation ended, and elements and report
 /// hold the best curve that was found.
 ///
-/// Errors: MINVAR_TOO_FEW_JOINTS to MINVAR_BAD_REFERENCE, whatever is wrong with data, options or memory. All are
+/// Errors: MINVAR_TOO_FEW_JOINTS to MINVAR_OBSTACLES_NOT_POSSIBLE, whatever is wrong with data, options or memory. All are
 /// found before any work: elements, records and report are untouched then.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn minvar_curve_solve(

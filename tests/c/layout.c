@@ -28,13 +28,21 @@ FIELD(minvar_joint, curvature, 104);
 FIELD(minvar_joint, guide, 168);
 SIZE(minvar_joint, 192);
 
+FIELD(minvar_obstacle, from, 0);
+FIELD(minvar_obstacle, to, 24);
+FIELD(minvar_obstacle, clearance, 48);
+FIELD(minvar_obstacle, side, 56);
+SIZE(minvar_obstacle, 64);
+
 FIELD(minvar_curve, joints, 0);
 FIELD(minvar_curve, joint_count, 8);
 FIELD(minvar_curve, closed, 16);
 FIELD(minvar_curve, reference, 24);
 FIELD(minvar_curve, reference_count, 32);
 FIELD(minvar_curve, reference_weight, 40);
-SIZE(minvar_curve, 48);
+FIELD(minvar_curve, obstacles, 48);
+FIELD(minvar_curve, obstacle_count, 56);
+SIZE(minvar_curve, 64);
 
 FIELD(minvar_options, functional, 0);
 FIELD(minvar_options, elements_per_span, 4);
@@ -153,6 +161,14 @@ int main(void) {
     PRINT(guide);
     END();
 #undef TYPE
+#define TYPE minvar_obstacle
+    BEGIN("minvar_obstacle");
+    PRINT(from);
+    PRINT(to);
+    PRINT(clearance);
+    PRINT(side);
+    END();
+#undef TYPE
 #define TYPE minvar_curve
     BEGIN("minvar_curve");
     PRINT(joints);
@@ -161,6 +177,8 @@ int main(void) {
     PRINT(reference);
     PRINT(reference_count);
     PRINT(reference_weight);
+    PRINT(obstacles);
+    PRINT(obstacle_count);
     END();
 #undef TYPE
 #define TYPE minvar_options

@@ -2,11 +2,11 @@
 //! must hold of them.
 
 use minvar::curve::{
-    Curve, CurveError, Element, Functional, Joint, OptionName, Options, Quantity, Reference, elements_len,
-    measure, solve, update, workspace_len,
+    Curve, CurveError, Element, Functional, Joint, Obstacle, OptionName, Options, Quantity, Reference,
+    Report, Side, elements_len, measure, solve, update, workspace_len,
 };
 use minvar::solve::{Silent, Status};
-use minvar_tests::curves::{deviation, solve_curve};
+use minvar_tests::curves::{deviation, distance, solve_curve};
 use std::collections::BTreeMap;
 
 const WOODFORD: [[f64; 2]; 7] =
@@ -352,4 +352,119 @@ fn a_warm_start_finds_what_a_cold_one_does() {
     let error = update(&curve, &options, &mut workspace, &mut elements, &mut [], &mut Silent);
     assert_eq!(error.expect_err("no start"), CurveError::BadElement { element: 0 });
     assert_eq!(elements, [Element::ZERO; 6]);
+}
+
+fn solved(curve: &Curve<'_>, options: &Options) -> (Report, Vec<Element>) {
+    let mut workspace = vec![f64::NAN; workspace_len(curve, options).expect("good data")];
+    let mut elements = vec![Element::ZERO; elements_len(curve, options)];
+    let report =
+        solve(curve, options, &mut workspace, &mut elements, &mut [], &mut Silent).expect("good data");
+    elements.truncate(report.elements);
+    (report, elements)
+}
+
+/// How far a point lies to the left of a planar chain.
+fn to_the_left(elements: &[Element], point: [f64; 3]) -> f64 {
+    let found = measure::closest(elements, point).expect("a place");
+    let (t, off) = (found.tangent, [point[0] - found.point[0], point[1] - found.point[1]]);
+    (t[0] * off[1] - t[1] * off[0]).signum() * distance(found.point, point)
+}
+
+fn coving() -> [Joint; 2] {
+    [
+        Joint::at([0.5, -12.0, 0.0]).with_tangent(Quantity::fixed([0.0, 1.0, 0.0])),
+        Joint::at([20.0, -0.5, 0.0]).with_tangent(Quantity::fixed([1.0, 0.0, 0.0])),
+    ]
+}
+
+#[test]
+fn a_curve_keeps_clear_of_its_obstacles_and_touches_only_what_pushes() {
+    let joints = coving();
+    let corner = [6.0, -6.0, 0.0];
+    let (free, _) = solve_curve(&joints, false, &Options::DEFAULT).expect("good data");
+    for elements_per_span in [1, 4] {
+        let options = Options { elements_per_span, ..Options::DEFAULT };
+        let mut last = free.value;
+        for clearance in [0.0, 0.25, 1.0] {
+            let obstacles = [Obstacle::point(corner, clearance, Side::LEFT)];
+            let curve = Curve::open(&joints).with_obstacles(&obstacles);
+            let (report, elements) = solved(&curve, &options);
+            assert_eq!(report.status, Status::Converged);
+            assert!((to_the_left(&elements, corner) - clearance).abs() < 1e-9, "{clearance}");
+            assert!(report.value > last, "more clearance costs more");
+            last = report.value;
+            assert_eq!(report.elements, 2 * elements_per_span as usize);
+            // G2 at the contact.
+            let (one, other) = (elements_per_span as usize - 1, elements_per_span as usize);
+            let [a, b] = [(one, 1.0), (other, 0.0)]
+                .map(|(element, t)| measure::at(&elements, element, t).expect("a place"));
+            assert!((a.signed_curvature - b.signed_curvature).abs() < 1e-12);
+            assert!(distance(a.tangent, b.tangent) < 1e-14);
+        }
+    }
+    // The same place given as a joint: its tangent is what the contact has found.
+    let obstacles = [Obstacle::point(corner, 0.25, Side::LEFT)];
+    let (touching, elements) = solved(&Curve::open(&joints).with_obstacles(&obstacles), &Options::DEFAULT);
+    let through = [joints[0], Joint::at(elements[0].rows[5]), joints[1]];
+    let (fixed, _) = solve_curve(&through, false, &Options::DEFAULT).expect("good data");
+    close(fixed.value, touching.value, 1e-7, "through the contact");
+
+    // What lies far off, or on the right side already, changes nothing.
+    for obstacles in
+        [[Obstacle::point([6.0, 5.0, 0.0], 0.5, Side::LEFT)], [Obstacle::point(corner, 0.1, Side::RIGHT)]]
+    {
+        let (report, _) = solved(&Curve::open(&joints).with_obstacles(&obstacles), &Options::DEFAULT);
+        assert_eq!(report.elements, 1);
+        assert_eq!(report.value, free.value);
+    }
+}
+
+#[test]
+fn a_curve_passes_under_a_ceiling() {
+    let joints = [Joint::at([0.0, 0.0, 0.0]), Joint::at([2.0, 2.7, 0.0]), Joint::at([6.0, 1.2, 0.0])];
+    let obstacles = [Obstacle::segment([1.0, 2.9, 0.0], [4.0, 2.9, 0.0], 0.05, Side::LEFT)];
+    let options = Options { elements_per_span: 2, ..Options::DEFAULT };
+    let (report, elements) = solved(&Curve::open(&joints).with_obstacles(&obstacles), &options);
+    assert_eq!(report.status, Status::Converged);
+    let [_, high] = measure::bounding_box(&elements).expect("a box");
+    assert!((high[1] - 2.85).abs() < 1e-8, "{}", high[1]);
+    for step in 0..=30 {
+        let x = 1.0 + 0.1 * f64::from(step);
+        assert!(to_the_left(&elements, [x, 2.9, 0.0]) > 0.05 - 1e-8, "{x}");
+    }
+}
+
+#[test]
+fn obstacles_that_cannot_be_are_refused() {
+    let joints = coving();
+    let refuse = |obstacle: Obstacle, options: &Options| {
+        workspace_len(&Curve::open(&joints).with_obstacles(&[obstacle]), options).expect_err("refused")
+    };
+    let good = Obstacle::point([6.0, -6.0, 0.0], 0.25, Side::LEFT);
+    let bad = CurveError::BadObstacle { obstacle: 0 };
+    for clearance in [-1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(refuse(Obstacle { clearance, ..good }, &Options::DEFAULT), bad);
+    }
+    assert_eq!(refuse(Obstacle { from: [f64::NAN, 0.0, 0.0], ..good }, &Options::DEFAULT), bad);
+    assert_eq!(refuse(Obstacle { side: Side(2), ..good }, &Options::DEFAULT), bad);
+    let not = CurveError::ObstaclesNotPossible;
+    assert_eq!(refuse(good, &Options { tolerance: 1e-3, ..Options::DEFAULT }), not);
+    assert_eq!(refuse(good, &Options { length: 30.0, ..Options::DEFAULT }), not);
+    assert_eq!(refuse(good, &Options { dimension: 3, ..Options::DEFAULT }), not);
+    let above = Obstacle::point([6.0, -6.0, 1.0], 0.25, Side::LEFT);
+    assert_eq!(refuse(above, &Options::DEFAULT), not);
+}
+
+#[test]
+fn a_given_length_is_met_and_costs_what_the_truth_says() {
+    let truth = truth();
+    let [v, e, _] = truth[&("woodford".to_owned(), "mvc at l=8.4".to_owned())];
+    for (elements_per_span, allowed) in [(1, 1e-4), (2, 1e-7), (4, 1e-7)] {
+        let options = Options { length: 8.4, elements_per_span, ..Options::DEFAULT };
+        let (report, _) = solve_curve(&woodford(), false, &options).expect("good data");
+        assert_eq!(report.status, Status::Converged, "{elements_per_span}");
+        close(report.length, 8.4, 1e-9, "length");
+        close(report.variation, v, allowed, "V");
+        close(report.bending, e, allowed, "E");
+    }
 }

@@ -3,6 +3,8 @@
 use super::element::Element;
 use super::error::{CurveError, Part};
 use super::joint::{Continuity, Curve, Given, Joint, Quantity};
+use super::obstacle::Side;
+use super::options::Options;
 use nalgebra::Vector3;
 
 /// Below this fraction of the data's extent two points are the same.
@@ -159,4 +161,17 @@ pub(super) fn check_length(curve: &Curve<'_>, length: f64) -> Result<(), CurveEr
         last = here;
     }
     if length > sum { Ok(()) } else { Err(CurveError::LengthTooShort) }
+}
+
+/// Whether obstacles make sense.
+pub(super) fn check_obstacles(curve: &Curve<'_>, options: &Options) -> Result<(), CurveError> {
+    for (index, obstacle) in curve.obstacles.iter().enumerate() {
+        let finite = obstacle.from.iter().chain(&obstacle.to).all(|x| x.abs() <= LARGEST_EXTENT);
+        let clear = obstacle.clearance >= 0.0 && obstacle.clearance <= LARGEST_EXTENT;
+        if !(finite && clear && obstacle.side.0 <= Side::RIGHT.0) {
+            return Err(CurveError::BadObstacle { obstacle: index });
+        }
+    }
+    let alone = options.tolerance == 0.0 && options.length == 0.0 && curve.reference.is_none();
+    if curve.obstacles.is_empty() || alone { Ok(()) } else { Err(CurveError::ObstaclesNotPossible) }
 }

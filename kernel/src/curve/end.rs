@@ -66,6 +66,7 @@ impl Coordinate {
     pub(super) const fn orders(self) -> Range<usize> {
         match self {
             Self::Point(_) | Self::Along(_) => 0..1,
+            Self::Roll(_) => 0..3,
             Self::Tangent(_) | Self::Speed => 1..3,
             Self::Curvature(_) | Self::Turn | Self::Stretch => 2..3,
         }
@@ -79,6 +80,9 @@ pub(super) enum Coordinate {
     Point(usize),
     /// The motion along the `k`-th direction in which a joint slides, which the end does not know.
     Along(usize),
+    /// The turn of a tangent whose point rolls along with it around a centre that lies at this distance to the left (to the
+    /// right if it is negative); the plane only.
+    Roll(f64),
     Tangent(usize),
     Curvature(usize),
     Turn,
@@ -103,6 +107,10 @@ impl<const D: usize> End<D> {
                 [unit, zero, zero]
             }
             Coordinate::Along(_) => [zero; 3],
+            Coordinate::Roll(centre) => {
+                let [_, first, second] = self.tangent_map(Coordinate::Tangent(0));
+                [tangent * centre, first, second]
+            }
             Coordinate::Tangent(j) => {
                 let normal = self.frame[j + 1];
                 let bend = normal * self.stretch - tangent * (speed * speed * self.curvature[j]);
@@ -126,7 +134,19 @@ impl<const D: usize> End<D> {
         first: &SVector<f64, D>,
         second: &SVector<f64, D>,
     ) -> f64 {
-        use Coordinate::{Curvature, Point, Speed, Stretch, Tangent, Turn};
+        use Coordinate::{Curvature, Point, Roll, Speed, Stretch, Tangent, Turn};
+        let turns = |coordinate| if let Roll(_) = coordinate { Tangent(0) } else { coordinate };
+        match (one, other) {
+            (Roll(centre), Roll(_)) => {
+                // The point runs on a circle about the centre.
+                let turned = self.second_map(Tangent(0), Tangent(0), point, first, second);
+                return turned + centre * point.dot(&self.frame[D - 1]);
+            }
+            (Roll(_), _) | (_, Roll(_)) => {
+                return self.second_map(turns(one), turns(other), point, first, second);
+            }
+            _ => {}
+        }
         let (tangent, speed) = (self.frame[0], self.speed);
         let normal = |j: usize| self.frame[j + 1];
         match (one, other) {
@@ -177,6 +197,7 @@ impl<const D: usize> SideStep<D> {
     pub(super) fn note(&mut self, coordinate: Coordinate, step: f64) {
         match coordinate {
             Coordinate::Tangent(j) => self.turn[j] = step,
+            Coordinate::Roll(_) => self.turn[0] = step,
             Coordinate::Curvature(j) => self.bend[j] = step,
             Coordinate::Turn => self.twist = step,
             _ => {}

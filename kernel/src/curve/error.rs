@@ -131,6 +131,13 @@ pub enum CurveError {
         /// How many were given.
         given: usize,
     },
+    /// An obstacle has a number that is not finite, a negative clearance or an unknown side.
+    BadObstacle {
+        /// The obstacle.
+        obstacle: usize,
+    },
+    /// Obstacles need a planar curve, without a tolerance, a reference shape, a given length or a warm start.
+    ObstaclesNotPossible,
     /// An element of the reference shape or of the start is not a number, or stands still at an end.
     BadElement {
         /// The element.
@@ -207,6 +214,13 @@ impl fmt::Display for CurveError {
             Self::WrongElementCount { needed, given } => {
                 write!(f, "the reference shape or the start needs {needed} elements; {given} given")
             }
+            Self::BadObstacle { obstacle } => write!(
+                f,
+                "obstacle {obstacle} has a number that is not finite, a negative clearance or an unknown side"
+            ),
+            Self::ObstaclesNotPossible => f.write_str(
+                "obstacles need a planar curve, without a tolerance, a reference shape, a given length or a warm start",
+            ),
             Self::BadElement { element } => {
                 write!(
                     f,

@@ -1,6 +1,7 @@
 //! Joints: what a designer gives, point by point (thesis 4.1 and 4.5).
 
 use super::element::Element;
+use super::obstacle::Obstacle;
 
 /// Whether a quantity is the solver's to choose.
 #[repr(transparent)]
@@ -147,6 +148,8 @@ pub struct Curve<'a> {
     pub closed: bool,
     /// A shape whose change of curvature is this curve's aim, if any.
     pub reference: Option<Reference<'a>>,
+    /// What a planar curve must keep clear of; may be empty.
+    pub obstacles: &'a [Obstacle],
 }
 
 /// A reference shape (thesis 4.6): the curve minimises `∫ |dκ/ds − α dκ₀/ds|² ds` with `κ₀` the reference's curvature
@@ -168,12 +171,17 @@ pub struct Reference<'a> {
 impl<'a> Curve<'a> {
     /// A curve through joints, closed or not.
     pub const fn new(joints: &'a [Joint], closed: bool) -> Self {
-        Self { joints, closed, reference: None }
+        Self { joints, closed, reference: None, obstacles: &[] }
     }
 
     /// An open curve.
     pub const fn open(joints: &'a [Joint]) -> Self {
         Self::new(joints, false)
+    }
+
+    /// The same curve with obstacles.
+    pub const fn with_obstacles(self, obstacles: &'a [Obstacle]) -> Self {
+        Self { obstacles, ..self }
     }
 
     /// The same curve with a reference shape.

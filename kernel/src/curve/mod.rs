@@ -33,6 +33,7 @@
 
 mod accuracy;
 mod check;
+mod contacts;
 pub mod convert;
 mod element;
 mod end;
@@ -45,6 +46,7 @@ mod joint;
 pub mod measure;
 mod model;
 mod natural;
+mod obstacle;
 mod options;
 mod passes;
 mod placement;
@@ -59,5 +61,6 @@ pub use error::{CurveError, OptionName, Part};
 pub use functional::Functional;
 pub use joint::{Continuity, Curve, Given, Joint, Quantity, Reference};
 pub use measure::{CurvePoint, MeasureError};
+pub use obstacle::{Obstacle, Side};
 pub use options::Options;
 pub use solve::{Report, elements_len, solve, update, workspace_len};

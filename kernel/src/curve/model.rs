@@ -10,6 +10,7 @@ use super::fairness::{Density, Shape};
 use super::functional::{Functional, Weights};
 use super::guard::Guard;
 use super::joint::{Continuity, Curve, Given, Joint};
+use super::obstacle::Side;
 use super::placement::Placement;
 use super::rows::{Integrand, Mirrored, RowDerivatives};
 use crate::basis::mirrored::{pair_count, pairs};
@@ -55,8 +56,17 @@ pub(super) struct Goal {
 pub(super) enum Division<'a> {
     /// So many elements a span.
     Even(usize),
-    /// A number a node: that of its joint, from 1, or 0 for a node between joints.
+    /// A number a node: that of its joint, from 1, 0 for a node between joints, or minus that of its contact, from 1.
     Marked(&'a [f64]),
+}
+
+/// How a node touches an obstacle.
+#[derive(Clone, Copy)]
+pub(super) enum Contact<const D: usize> {
+    /// Around a point at a distance to the left; to the right if that is negative.
+    Around { point: SVector<f64, D>, left: f64 },
+    /// Along a segment of this direction.
+    Along { direction: SVector<f64, D> },
 }
 
 /// What of a point is free.
@@ -78,6 +88,8 @@ pub(super) struct Model<'a, const D: usize> {
     pub(super) weights: Weights,
     /// A length that is approached.
     pub(super) goal: Option<Goal>,
+    /// The contacts: three times the obstacle's number, plus 0 for its first end, 1 for its other, 2 for between.
+    pub(super) contacts: &'a [f64],
     /// Gauss–Lobatto points an element.
     pub(super) points: usize,
     /// Whether more points are taken where they tell a difference.
@@ -140,6 +152,32 @@ impl<const D: usize> Model<'_, D> {
         }
     }
 
+    /// A node's mark, see [`Division::Marked`].
+    pub(super) fn joint_mark(&self, node: usize) -> f64 {
+        self.joint_number(node).map_or(0.0, |joint| (joint + 1) as f64)
+    }
+
+    /// The contact at a node, if there is one.
+    pub(super) fn contact(&self, node: usize) -> Option<Contact<D>> {
+        let Division::Marked(nodes) = self.division else { return None };
+        let mark = *nodes.get(node)?;
+        if mark >= 0.0 {
+            return None;
+        }
+        let code = *self.contacts.get((-mark) as usize - 1)? as usize;
+        let obstacle = self.curve.obstacles.get(code / 3)?;
+        let [from, to] = [&obstacle.from, &obstacle.to].map(|point| self.place.local_point(point));
+        let left = if obstacle.side == Side::LEFT { 1.0 } else { -1.0 };
+        Some(match code % 3 {
+            0 => Contact::Around { point: from, left: left * self.place.local_length(obstacle.clearance) },
+            1 => Contact::Around { point: to, left: left * self.place.local_length(obstacle.clearance) },
+            _ => {
+                let along = to - from;
+                Contact::Along { direction: along / libm::sqrt(along.dot(&along)) }
+            }
+        })
+    }
+
     fn node_start(node: usize) -> usize {
         node * (D + side_len(D))
     }
@@ -147,6 +185,11 @@ impl<const D: usize> Model<'_, D> {
     /// Where in the state a node's point stands.
     pub(super) fn point_place(node: usize) -> usize {
         Self::node_start(node)
+    }
+
+    /// The numbers that a node and an element add to the state.
+    pub(super) const fn state_a_piece() -> usize {
+        D + side_len(D) + 4 + 2 * side_len(D)
     }
 
     fn element_start(&self, element: usize) -> usize {
@@ -209,6 +252,19 @@ impl<const D: usize> Model<'_, D> {
 
     /// Calls `visit` with the coordinates that are unknowns of a node, in the order of its dofs.
     fn node_coordinates(&self, node: usize, mut visit: impl FnMut(Coordinate)) {
+        match self.contact(node) {
+            Some(Contact::Around { left, .. }) => {
+                visit(Coordinate::Roll(left));
+                visit(Coordinate::Curvature(0));
+                return;
+            }
+            Some(Contact::Along { .. }) => {
+                visit(Coordinate::Along(0));
+                visit(Coordinate::Curvature(0));
+                return;
+            }
+            None => {}
+        }
         let freedom = self.freedom(node, 0);
         let continuity = self.continuity(node);
         match freedom.point {
@@ -334,7 +390,23 @@ where
 
     /// The direction in which a node slides.
     fn guide(&self, node: usize, k: usize) -> SVector<f64, D> {
+        if let Some(Contact::Along { direction }) = self.contact(node) {
+            return direction;
+        }
         self.joint(node).and_then(|joint| self.place.slide(joint, k)).unwrap_or_else(SVector::zeros)
+    }
+
+    /// The same curve with other nodes and contacts.
+    pub(super) fn touching<'m>(&self, marks: &'m [f64], contacts: &'m [f64]) -> Model<'m, D>
+    where
+        Self: 'm,
+    {
+        Model { division: Division::Marked(marks), contacts, ..*self }
+    }
+
+    /// The functional's derivative by an element's chord.
+    pub(super) fn slope_by_chord(&self, element: usize, first: [f64; 2], state: &[f64]) -> SVector<f64, D> {
+        self.combined(element, first).derivatives(&self.rows(element, state)).gradient[0].into()
     }
 
     /// Gradient and Hessian by some of an element's local unknowns from those by its rows; the length's gradient goes to
@@ -610,6 +682,11 @@ where
                 }
             }
             turn.apply(side);
+            if let Some(Contact::Around { point: centre, left }) = self.contact(block) {
+                for d in 0..D {
+                    point[d] = centre[d] - left * side[D + d];
+                }
+            }
         } else {
             let (scalars, sides) = to.split_at_mut(4);
             let (first, second) = sides.split_at_mut(side_len(D));
@@ -651,7 +728,7 @@ where
                     Coordinate::Point(_) | Coordinate::Along(_) | Coordinate::Speed | Coordinate::Stretch => {
                         length
                     }
-                    Coordinate::Tangent(_) | Coordinate::Turn => 1.0,
+                    Coordinate::Tangent(_) | Coordinate::Roll(_) | Coordinate::Turn => 1.0,
                     Coordinate::Curvature(_) => 1.0 / length,
                 };
             }

@@ -215,7 +215,7 @@ impl<'a> Passes<'a> {
 }
 
 /// The functional without a length's multiplier, and the length.
-fn total<const D: usize>(model: &Model<'_, D>, state: &[f64]) -> [f64; 2]
+pub(super) fn total<const D: usize>(model: &Model<'_, D>, state: &[f64]) -> [f64; 2]
 where
     Shape<D>: Density<D>,
 {

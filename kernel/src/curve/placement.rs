@@ -37,6 +37,10 @@ impl<const D: usize> Placement<D> {
         SVector::from_fn(|d, _| self.axes[d].dot(&vector) * self.unit)
     }
 
+    pub(super) fn local_length(&self, length: f64) -> f64 {
+        length / self.unit
+    }
+
     /// The size of a curvature vector.
     pub(super) fn local_size(&self, value: &[f64; 3]) -> f64 {
         let vector = Vector3::from(*value);
@@ -129,6 +133,12 @@ impl Place {
 /// Calls `visit` with every given vector relative to the origin: offsets of points with their rounding error, unit
 /// tangents, and directions of curvature.
 fn vectors(curve: &Curve<'_>, origin: &Vector3<f64>, mut visit: impl FnMut(Vector3<f64>, f64)) {
+    for obstacle in curve.obstacles {
+        for point in [&obstacle.from, &obstacle.to] {
+            let point = Vector3::from(*point);
+            visit(point - origin, 4.0 * f64::EPSILON * (point.amax() + origin.amax()));
+        }
+    }
     for joint in curve.joints {
         if joint.position.given != Given::FREE {
             let point = Vector3::from(joint.position.value);

@@ -1,7 +1,8 @@
 //! From a designer's data to elements: the three calls *how much*, *here it is*, *solve*.
 
 use super::accuracy::{Aim, Level, divide, divide_true};
-use super::check::{check, check_elements, check_length};
+use super::check::{check, check_elements, check_length, check_obstacles};
+use super::contacts::{Extended, Touching, keep_clear, most_contacts};
 use super::element::Element;
 use super::error::{CurveError, OptionName};
 use super::fairness::{Density, Shape};
@@ -52,9 +53,11 @@ pub struct Report {
     pub decrement: f64,
 }
 
-/// The number of elements that a curve has, or with a tolerance the most that it may have: `spans × elements_per_span`.
+/// The number of elements that a curve has, `spans × elements_per_span`; with a tolerance or obstacles the most that it may
+/// have: an obstacle counts as four spans then.
 pub const fn elements_len(curve: &Curve<'_>, options: &Options) -> usize {
-    curve.spans().saturating_mul(options.elements_per_span as usize)
+    let pieces = curve.spans().saturating_add(most_contacts(curve.obstacles.len()));
+    pieces.saturating_mul(options.elements_per_span as usize)
 }
 
 /// The workspace, in `f64`s, that [`solve()`] needs for these data. It depends on the number of joints, on what is
@@ -67,6 +70,7 @@ pub fn workspace_len(curve: &Curve<'_>, options: &Options) -> Result<usize, Curv
     let unit = look_over(curve, options)?;
     Ok(match Place::of(curve, unit, options.dimension)? {
         Place::Plane(place) => Layout::of(&model(curve, options, &place), options).len(),
+        Place::Space(_) if !curve.obstacles.is_empty() => return Err(CurveError::ObstaclesNotPossible),
         Place::Space(place) => Layout::of(&model(curve, options, &place), options).len(),
     })
 }
@@ -76,6 +80,7 @@ fn look_over(curve: &Curve<'_>, options: &Options) -> Result<f64, CurveError> {
     options.check()?;
     let unit = check(curve)?;
     check_length(curve, options.length)?;
+    check_obstacles(curve, options)?;
     if let Some(reference) = &curve.reference {
         let (needed, given) = (elements_len(curve, options), reference.elements.len());
         let plain = options.functional == Functional::MVC && options.tolerance == 0.0;
@@ -145,6 +150,7 @@ fn begin(
     let unit = look_over(curve, options)?;
     match Place::of(curve, unit, options.dimension)? {
         Place::Plane(place) => run(curve, options, &place, workspace, elements, records, observer, warm),
+        Place::Space(_) if !curve.obstacles.is_empty() => Err(CurveError::ObstaclesNotPossible),
         Place::Space(place) => run(curve, options, &place, workspace, elements, records, observer, warm),
     }
 }
@@ -170,6 +176,7 @@ fn model<'a, const D: usize>(curve: &Curve<'a>, options: &Options, place: &Place
         chooses_points: options.quadrature_points == 0,
         weights: Weights { bending: own.bending + bending, length, ..own },
         goal: None,
+        contacts: &[],
         gauge: 0.0,
         guarded: true,
         natural_cost: 0.0,
@@ -197,15 +204,24 @@ impl Layout {
         let goal = (options.length > 0.0).then_some(Goal { target: 1.0, multiplier: 0.0, penalty: 1.0 });
         let model = &Model { goal, ..*model };
         let natural = natural::memory_len(model.curve.joints.len(), spans, model.curve.closed);
+        let contacts = most_contacts(model.curve.obstacles.len());
+        let more = contacts * options.elements_per_span as usize;
+        let extended = Extended { model, more };
+        let (state, work) = if more > 0 {
+            (extended.state_len(), solve::workspace_len(&extended, 1))
+        } else {
+            (model.state_len(), solve::workspace_len(model, 1))
+        };
+        let divides = options.tolerance > 0.0 || more > 0;
         Self {
-            state: model.state_len(),
-            division: if options.tolerance > 0.0 { [model.node_count(), spans] } else { [0; 2] },
+            state,
+            division: if divides { [model.node_count() + more, spans.max(contacts)] } else { [0; 2] },
             trace: if options.elements_per_span > 1 && D == 2 {
                 natural::trace_len(model.curve.joints.len(), spans, model.curve.closed)
             } else {
                 0
             },
-            work: solve::workspace_len(model, 1).max(natural),
+            work: work.max(natural),
         }
     }
 
@@ -249,7 +265,7 @@ where
     Shape<D>: Density<D>,
 {
     let mut model = model::<D>(curve, options, place);
-    let count = model.element_count();
+    let count = elements_len(curve, options);
     let too_short = CurveError::ElementsTooShort { needed: count, given: elements.len() };
     let elements = elements.get_mut(..count).ok_or(too_short)?;
     let layout = Layout::of(&model, options);
@@ -266,6 +282,9 @@ where
 
     let from = if warm { Some(&*elements) } else { curve.reference.map(|reference| reference.elements) };
     if let Some(from) = from {
+        if warm && !curve.obstacles.is_empty() {
+            return Err(CurveError::ObstaclesNotPossible);
+        }
         check_elements(from)?;
         model.natural_cost = adopt(&model, place, from, state);
         model.start_length = model.rough_length(state);
@@ -300,6 +319,7 @@ where
         Aim { tolerance: options.tolerance / place.unit, most_per_span: parts, relative_decrease: decrease };
     model.start_length = coarse.start_length;
     if parts > 1
+        && curve.obstacles.is_empty()
         && tension.is_some()
         && let Some(found) = natural::trace(&coarse, length, coarse_state, traced, &mut |sums, step| {
             passes.note(coarse.value_of(sums), step)
@@ -309,10 +329,11 @@ where
             // The elements' minimum is next to the true one.
             let kept = &mut work[..coarse_state.len()];
             kept.copy_from_slice(coarse_state);
+            let whole = &mut state[..model.state_len()];
             model.natural_cost =
-                found.write(&coarse, kept, &model, core::iter::repeat_n(parts, curve.spans()), state);
-            let outcome = passes.finish(&mut model, decrease, state, work).map_err(wrong)?;
-            return Ok(hand_over(&model, &outcome, &passes, state, elements, options));
+                found.write(&coarse, kept, &model, core::iter::repeat_n(parts, curve.spans()), whole);
+            let outcome = passes.finish(&mut model, decrease, whole, work).map_err(wrong)?;
+            return Ok(hand_over(&model, &outcome, &passes, whole, elements, options));
         }
         let mut level = Level { counts, marks, state: next_state };
         let divided =
@@ -333,8 +354,9 @@ where
     }
     .map_err(wrong)?;
     model.natural_cost = coarse.natural_cost;
-    if parts == 1 {
-        return Ok(hand_over(&coarse, &outcome, &passes, coarse_state, elements, options));
+    if parts == 1 || !curve.obstacles.is_empty() {
+        let memory = [state, next_state, marks, next_marks, counts];
+        return clear(&mut passes, &coarse, outcome, memory, work, elements, options).map_err(wrong);
     }
     let stopped = matches!(outcome.status, Status::Cancelled | Status::IterationLimit);
     let found =
@@ -369,15 +391,53 @@ where
     if found {
         let kept = &mut work[..coarse_state.len()];
         kept.copy_from_slice(coarse_state);
+        let state = &mut state[..model.state_len()];
         model.natural_cost = refine(&coarse, kept, |_| parts, &model, state);
         if !stopped {
             outcome = passes.finish(&mut model, decrease, state, work).map_err(wrong)?;
         }
     } else {
+        let state = &mut state[..model.state_len()];
         model.natural_cost = Start { model: &model, place, parts }.fill(state)?;
         outcome = passes.shape_and_finish(&mut model, decrease, state, work).map_err(wrong)?;
     }
     Ok(hand_over(&model, &outcome, &passes, state, elements, options))
+}
+
+/// Keeps a solution with one element a span clear of its obstacles, if there are any, divides it and hands it over. `memory` is state, next state, marks, next
+/// marks and contacts.
+fn clear<const D: usize>(
+    passes: &mut Passes<'_>,
+    model: &Model<'_, D>,
+    mut outcome: Outcome,
+    [state, spare, marks, old_marks, contacts]: [&mut [f64]; 5],
+    work: &mut [f64],
+    elements: &mut [Element],
+    options: &Options,
+) -> Result<Report, WorkspaceTooSmall>
+where
+    Shape<D>: Density<D>,
+{
+    if model.curve.obstacles.is_empty() || outcome.status != Status::Converged {
+        return Ok(hand_over(model, &outcome, passes, state, elements, options));
+    }
+    let nodes = model.node_count();
+    for (node, mark) in marks[..nodes].iter_mut().enumerate() {
+        *mark = model.joint_mark(node);
+    }
+    let most = most_contacts(model.curve.obstacles.len());
+    let contacts = &mut contacts[..most];
+    let mut touching = Touching { marks, old_marks, contacts, state, spare, nodes, used: 0, divided: false };
+    let decrease = options.relative_decrease;
+    outcome = keep_clear(passes, model, decrease, outcome, &mut touching, work)?;
+    let parts = options.elements_per_span as usize;
+    if parts > 1 && outcome.status == Status::Converged {
+        touching.divide(model, parts);
+        outcome = keep_clear(passes, model, decrease, outcome, &mut touching, work)?;
+    }
+    let Touching { marks, contacts, state, nodes, .. } = touching;
+    let model = model.touching(&marks[..nodes], contacts);
+    Ok(hand_over(&model, &outcome, passes, state, elements, options))
 }
 
 fn figures_of<const D: usize>(model: &Model<'_, D>, state: &[f64]) -> Figures

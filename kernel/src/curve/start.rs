@@ -505,7 +505,12 @@ fn end_of<const D: usize>(
 }
 
 /// The end that a span's start curve has at an interior parameter, for elements that are `1/parts` of it.
-fn cut<const D: usize>(rows: &[SVector<f64, D>; 6], t: f64, parts: f64, before: &End<D>) -> End<D> {
+pub(super) fn cut<const D: usize>(
+    rows: &[SVector<f64, D>; 6],
+    t: f64,
+    parts: f64,
+    before: &End<D>,
+) -> End<D> {
     let basis = hermite::basis(t);
     let [point, first, second] = [0, 1, 2].map(|order: usize| combine(rows, &basis[order]));
     let end = end_of(&point, &first, &second, Some(before));

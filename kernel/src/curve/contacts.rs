@@ -1,0 +1,378 @@
+//! Keeping clear of obstacles: which contacts a curve needs.
+//!
+//! The curve is solved without contacts. While an obstacle's end, or a place on its segment, is too near to it or on the
+//! wrong side, the worst such place becomes a contact, a node of the curve that touches it, and the curve is solved again.
+//! A contact that pulls, where the functional would sink if the curve moved away from the obstacle, is given up and stays an
+//! ordinary node. The sets never repeat in practice; their number is bounded all the same.
+
+use super::end::{End, rows_between};
+use super::fairness::{Density, Shape};
+use super::model::{Contact, Model};
+use super::obstacle::Side;
+use super::passes::{Passes, total};
+use super::rows::combine;
+use super::start::{cut, refine};
+use crate::basis::hermite;
+use crate::solve::{BlockList, Outcome, Problem, Status, WorkspaceTooSmall};
+use nalgebra::SVector;
+
+/// A violation below this part of the curve's size is none.
+const TOUCHES: f64 = 1e-9;
+/// Places an element, and on a segment, where the nearest is looked for first.
+const SAMPLES: usize = 16;
+
+/// The least part of an element that is cut off.
+const LEAST_PIECE: f64 = 0.05;
+
+/// How often an obstacle may get a contact: as many elements may be added.
+pub(super) const fn most_contacts(obstacles: usize) -> usize {
+    4 * obstacles
+}
+
+/// A problem with so many more nodes and elements, for its memory alone.
+pub(super) struct Extended<'m, 'a, const D: usize> {
+    pub(super) model: &'m Model<'a, D>,
+    pub(super) more: usize,
+}
+
+impl<const D: usize> Extended<'_, '_, D> {
+    /// The most dofs of a node that is added, and of its element.
+    const ADDED: usize = 3 * D;
+}
+
+impl<const D: usize> Problem for Extended<'_, '_, D>
+where
+    Shape<D>: Density<D>,
+{
+    fn blocks(&self) -> usize {
+        self.model.blocks() + 2 * self.more
+    }
+
+    fn dofs(&self, block: usize) -> usize {
+        if block < self.model.blocks() { self.model.dofs(block) } else { Self::ADDED }
+    }
+
+    fn state_range(&self, block: usize) -> core::ops::Range<usize> {
+        self.model.state_range(block)
+    }
+
+    fn state_len(&self) -> usize {
+        self.model.state_len() + self.more * Model::<D>::state_a_piece()
+    }
+
+    fn elements(&self) -> usize {
+        self.model.elements() + self.more
+    }
+
+    fn element_blocks(&self, element: usize, blocks: &mut BlockList) {
+        self.model.element_blocks(element.min(self.model.elements() - 1), blocks);
+    }
+
+    fn max_element_dofs(&self) -> usize {
+        self.model.max_element_dofs().max(3 * Self::ADDED) + 2 * Self::ADDED
+    }
+
+    fn envelope_bound(&self) -> usize {
+        let unknowns: usize = (0..self.blocks()).map(|block| self.dofs(block)).sum();
+        let reach = 3 * self.max_element_dofs();
+        unknowns * reach.min(unknowns)
+    }
+
+    fn is_coupled(&self) -> bool {
+        self.model.is_coupled()
+    }
+
+    fn cost(&self, element: usize, state: &[f64]) -> f64 {
+        self.model.cost(element, state)
+    }
+
+    fn linearise(&self, element: usize, state: &[f64], gradient: &mut [f64], matrix: &mut [f64]) -> f64 {
+        self.model.linearise(element, state, gradient, matrix)
+    }
+
+    fn retract(&self, block: usize, from: &[f64], step: &[f64], to: &mut [f64]) {
+        self.model.retract(block, from, step, to);
+    }
+
+    fn natural_sizes(&self, block: usize, state: &[f64], sizes: &mut [f64]) {
+        self.model.natural_sizes(block, state, sizes);
+    }
+
+    fn natural_cost(&self) -> f64 {
+        self.model.natural_cost()
+    }
+}
+
+/// A curve with contacts on its way: marks of its nodes, contacts, state; `count` nodes and `used` contacts count.
+pub(super) struct Touching<'w> {
+    pub(super) marks: &'w mut [f64],
+    /// Scratch of the marks' length.
+    pub(super) old_marks: &'w mut [f64],
+    pub(super) contacts: &'w mut [f64],
+    pub(super) state: &'w mut [f64],
+    /// Scratch of the state's length.
+    pub(super) spare: &'w mut [f64],
+    pub(super) nodes: usize,
+    pub(super) used: usize,
+    /// Whether elements were cut since the last solution.
+    pub(super) divided: bool,
+}
+
+impl Touching<'_> {
+    /// Cuts every element into equal parts.
+    pub(super) fn divide<const D: usize>(&mut self, of: &Model<'_, D>, parts: usize)
+    where
+        Shape<D>: Density<D>,
+    {
+        self.divided = true;
+        let Self { marks, old_marks, contacts, state, spare, nodes, .. } = self;
+        let count = *nodes;
+        old_marks[..count].copy_from_slice(&marks[..count]);
+        let old = of.touching(&old_marks[..count], contacts);
+        *nodes = old.element_count() * parts + usize::from(!of.curve.closed);
+        marks[..*nodes].fill(0.0);
+        for (mark, old) in marks.iter_mut().step_by(parts).zip(&old_marks[..count]) {
+            *mark = *old;
+        }
+        let len = old.state_len();
+        spare[..len].copy_from_slice(&state[..len]);
+        let new = of.touching(&marks[..*nodes], contacts);
+        refine(&old, spare, |_| parts, &new, &mut state[..new.state_len()]);
+    }
+}
+
+/// A place of a curve near a point.
+#[derive(Clone, Copy)]
+struct Foot<const D: usize> {
+    element: usize,
+    t: f64,
+    /// How far the point lies to the left of the curve.
+    left: f64,
+}
+
+impl<const D: usize> Foot<D> {
+    /// The foot of a point on a chain of elements; `None` where the nearest place is an end that the curve does not pass.
+    fn of(model: &Model<'_, D>, state: &[f64], point: &SVector<f64, D>) -> Option<Self>
+    where
+        Shape<D>: Density<D>,
+    {
+        let mut best: Option<(f64, usize, f64)> = None;
+        for element in 0..model.element_count() {
+            let rows = model.rows(element, state);
+            for sample in 0..=SAMPLES {
+                let t = sample as f64 / SAMPLES as f64;
+                let off = combine(&rows, &hermite::basis(t)[0]) - point;
+                let square = off.dot(&off);
+                if best.is_none_or(|(least, ..)| square < least) {
+                    best = Some((square, element, t));
+                }
+            }
+        }
+        let (_, element, mut t) = best?;
+        let rows = model.rows(element, state);
+        for _ in 0..8 {
+            let basis = hermite::basis(t);
+            let [here, first, second] = [0, 1, 2].map(|order: usize| combine(&rows, &basis[order]));
+            let off = here - point;
+            let slope = first.dot(&first) + off.dot(&second);
+            let slope = if slope > 0.0 { slope } else { first.dot(&first) };
+            t = (t - off.dot(&first) / slope).clamp(0.0, 1.0);
+        }
+        let basis = hermite::basis(t);
+        let (here, first) = (combine(&rows, &basis[0]), combine(&rows, &basis[1]));
+        let off = point - here;
+        let (distance, speed) = (libm::sqrt(off.dot(&off)), libm::sqrt(first.dot(&first)));
+        let along = off.dot(&first) / speed;
+        if along.abs() > 0.1 * distance {
+            return None;
+        }
+        let across = (first[0] * off[1] - first[1] * off[0]) / speed;
+        let left = if across >= 0.0 { distance } else { -distance };
+        Some(Self { element, t, left })
+    }
+}
+
+/// The worst violation: how much too near, the contact's code and the foot.
+fn worst<const D: usize>(
+    model: &Model<'_, D>,
+    state: &[f64],
+    taken: impl Fn(usize) -> bool,
+) -> Option<(f64, usize, Foot<D>, SVector<f64, D>)>
+where
+    Shape<D>: Density<D>,
+{
+    let mut worst: Option<(f64, usize, Foot<D>, SVector<f64, D>)> = None;
+    for (index, obstacle) in model.curve.obstacles.iter().enumerate() {
+        let [from, to] = [&obstacle.from, &obstacle.to].map(|point| model.place.local_point(point));
+        let clearance = model.place.local_length(obstacle.clearance);
+        let sign = if obstacle.side == Side::LEFT { 1.0 } else { -1.0 };
+        let mut look = |share: f64, which: usize| {
+            if taken(3 * index + which) {
+                return;
+            }
+            let point = from + (to - from) * share;
+            if let Some(foot) = Foot::of(model, state, &point) {
+                let lack = clearance - sign * foot.left;
+                if worst.as_ref().is_none_or(|(most, ..)| lack > *most) {
+                    worst = Some((lack, 3 * index + which, foot, point));
+                }
+            }
+        };
+        look(0.0, 0);
+        if from != to {
+            look(1.0, 1);
+            for sample in 1..SAMPLES {
+                look(sample as f64 / SAMPLES as f64, 2);
+            }
+        }
+    }
+    worst
+}
+
+/// By how much the functional sinks when the curve at a node moves by a unit to the left.
+fn pull<const D: usize>(model: &Model<'_, D>, node: usize, first: [f64; 2], state: &[f64]) -> f64
+where
+    Shape<D>: Density<D>,
+{
+    let count = model.element_count();
+    let mut normal = SVector::<f64, D>::zeros();
+    let mut slope = SVector::<f64, D>::zeros();
+    for (element, end) in [(node.checked_sub(1).unwrap_or(count - 1), 1), (node, 0)] {
+        if element < count && model.node(element, end) == node {
+            normal = model.end(element, end, state).frame[D - 1];
+            let by_point = model.slope_by_chord(element, first, state);
+            slope += if end == 1 { by_point } else { -by_point };
+        }
+    }
+    -slope.dot(&normal)
+}
+
+/// Solves with as many contacts as the obstacles need, from a solution without.
+pub(super) fn keep_clear<const D: usize>(
+    passes: &mut Passes<'_>,
+    of: &Model<'_, D>,
+    relative_decrease: f64,
+    first: Outcome,
+    touching: &mut Touching<'_>,
+    work: &mut [f64],
+) -> Result<Outcome, WorkspaceTooSmall>
+where
+    Shape<D>: Density<D>,
+{
+    let mut outcome = first;
+    let rounds = 2 * most_contacts(of.curve.obstacles.len()) + 8;
+    for _ in 0..rounds {
+        // Give up what pulls; then take up what is worst; what was divided is solved in any case.
+        let mut changed = touching.divided;
+        touching.divided = false;
+        let nodes = touching.nodes;
+        let mut strongest: Option<(f64, usize)> = None;
+        if !changed {
+            let model = of.touching(&touching.marks[..nodes], touching.contacts);
+            let first = model.couple(total(&model, touching.state)).first;
+            for node in 0..nodes {
+                let mark = touching.marks[node];
+                if mark >= 0.0 {
+                    continue;
+                }
+                let code = touching.contacts[(-mark) as usize - 1] as usize;
+                let side = model.curve.obstacles[code / 3].side;
+                // Away from an obstacle on the left is to the right.
+                let sinks =
+                    pull(&model, node, first, touching.state) * if side == Side::LEFT { -1.0 } else { 1.0 };
+                if sinks > 0.0 && strongest.is_none_or(|(most, _)| sinks > most) {
+                    strongest = Some((sinks, node));
+                }
+            }
+        }
+        if let Some((_, node)) = strongest {
+            touching.marks[node] = 0.0;
+            changed = true;
+        }
+        if !changed {
+            let found = {
+                let model = of.touching(&touching.marks[..nodes], touching.contacts);
+                let size = model.rough_length(touching.state);
+                let marks = &touching.marks[..nodes];
+                let contacts = &*touching.contacts;
+                worst(&model, touching.state, |code| {
+                    marks.iter().any(|&mark| mark < 0.0 && contacts[(-mark) as usize - 1] as usize == code)
+                })
+                .filter(|(lack, ..)| *lack > TOUCHES * size)
+            };
+            let Some((_, code, foot, point)) = found else { return Ok(outcome) };
+            if touching.used == touching.contacts.len() || nodes == touching.marks.len() {
+                return Ok(Outcome { status: Status::Stalled, ..outcome });
+            }
+            touching.contacts[touching.used] = code as f64;
+            touching.used += 1;
+            insert(of, touching, &foot, &point);
+        }
+        let Touching { marks, contacts, state, nodes, .. } = &mut *touching;
+        let mut model = of.touching(&marks[..*nodes], contacts);
+        let state = &mut state[..model.state_len()];
+        outcome = passes.finish(&mut model, relative_decrease, state, work)?;
+        if outcome.status != Status::Converged {
+            return Ok(outcome);
+        }
+    }
+    Ok(Outcome { status: Status::Stalled, ..outcome })
+}
+
+/// Cuts an element at a foot and puts the newest contact there.
+fn insert<const D: usize>(
+    of: &Model<'_, D>,
+    touching: &mut Touching<'_>,
+    foot: &Foot<D>,
+    point: &SVector<f64, D>,
+) where
+    Shape<D>: Density<D>,
+{
+    let Touching { marks, old_marks, contacts, state, spare, nodes, used, .. } = touching;
+    let (count, place) = (*nodes, foot.element + 1);
+    old_marks[..count].copy_from_slice(&marks[..count]);
+    marks.copy_within(place..count, place + 1);
+    marks[place] = -(*used as f64);
+    *nodes = count + 1;
+    let old = of.touching(&old_marks[..count], contacts);
+    let new = of.touching(&marks[..count + 1], contacts);
+    let len = old.state_len();
+    spare[..len].copy_from_slice(&state[..len]);
+
+    // Not at a node itself: a piece must be left on either side.
+    let t = foot.t.clamp(LEAST_PIECE, 1.0 - LEAST_PIECE);
+    let [before, after] = [0, 1].map(|end: usize| old.end(foot.element, end, spare));
+    let mut middle = cut(&rows_between(&[before, after]), t, 1.0, &before);
+    match new.contact(place) {
+        Some(Contact::Around { point: centre, left }) => middle.point = centre - middle.frame[D - 1] * left,
+        Some(Contact::Along { direction }) => {
+            let forward = if middle.frame[0].dot(&direction) < 0.0 { -direction } else { direction };
+            middle.frame[0] = forward;
+            middle.frame[D - 1][0] = -forward[1];
+            middle.frame[D - 1][1] = forward[0];
+            let obstacle = &new.curve.obstacles[contacts[*used - 1] as usize / 3];
+            let sign = if obstacle.side == Side::LEFT { 1.0 } else { -1.0 };
+            let clearance = new.place.local_length(obstacle.clearance);
+            middle.point = point - middle.frame[D - 1] * (sign * clearance);
+        }
+        None => {}
+    }
+    let piece = |end: &End<D>, share: f64| End {
+        speed: end.speed * share,
+        stretch: end.stretch * share * share,
+        ..*end
+    };
+    for element in 0..old.element_count() {
+        if element == foot.element {
+            new.set_end(element, 0, &piece(&before, t), state);
+            new.set_end(element, 1, &piece(&middle, t), state);
+            new.set_end(element + 1, 0, &piece(&middle, 1.0 - t), state);
+            new.set_end(element + 1, 1, &piece(&after, 1.0 - t), state);
+        } else {
+            let target = if element < foot.element { element } else { element + 1 };
+            for end in 0..2 {
+                new.set_end(target, end, &old.end(element, end, spare), state);
+            }
+        }
+    }
+}
