@@ -241,6 +241,10 @@ typedef struct minvar_options {
     uint32_t max_iterations;
     // 2 for a planar curve, 3 for a space curve, 0 to find out: planar where all data lie in a plane. Default 0.
     uint32_t dimension;
+    // Stages of a continuation that starts under tension (thesis 4.10): each solves with a tenth of the tension of the one
+    // before; the last solution is where the search without it starts. It leads to the minimum of shortest length where
+    // start values alone lead elsewhere. At most 16. Default 0.
+    uint32_t continuation;
     // Converged when another step promises to lower the functional by less than this fraction, or 20 iterations
     // together lowered it by less than a thousand times that; 0 to below 1. Default 1e-12.
     double relative_decrease;
@@ -643,6 +647,29 @@ enum minvar_code minvar_curve_update(const struct minvar_curve *curve,
                                      struct minvar_element *elements,
                                      size_t elements_len,
                                      struct minvar_report *report,
+                                     struct minvar_error *error);
+
+// Looks for several minima of one curve: from the usual start values, from each start tangent turned round, and from each
+// span bent the other way or further (thesis 4.10: curves with and without a loop). The list is what these starts lead
+// to; it need not be complete.
+//
+// `reports` has room for `reports_len` reports and receives one a minimum, the lowest first. `elements` has room for
+// `(reports_len + 1)` times minvar_curve_elements_len() elements: the first so many receive the first minimum's, and so on;
+// the last are scratch. `count` receives the number of minima. `observer` sees every solve begin with iteration 1. The rest
+// as in minvar_curve_solve().
+//
+// Errors: as minvar_curve_solve().
+enum minvar_code minvar_curve_minima(const struct minvar_curve *curve,
+                                     const struct minvar_options *options,
+                                     double *workspace,
+                                     size_t workspace_len,
+                                     minvar_observer observer,
+                                     void *observer_context,
+                                     struct minvar_element *elements,
+                                     size_t elements_len,
+                                     struct minvar_report *reports,
+                                     size_t reports_len,
+                                     size_t *count,
                                      struct minvar_error *error);
 
 // Measures a chain of `count` elements. Length, V and E are sums over the elements by a 32-point rule: what happens

@@ -284,6 +284,7 @@ struct Options {
     std::uint32_t quadrature_points = minvar_options_defaults().quadrature_points;
     std::uint32_t max_iterations = minvar_options_defaults().max_iterations;
     std::uint32_t dimension = minvar_options_defaults().dimension;
+    std::uint32_t continuation = minvar_options_defaults().continuation;
     double relative_decrease = minvar_options_defaults().relative_decrease;
     double tension = minvar_options_defaults().tension;
     double bending = minvar_options_defaults().bending;
@@ -298,6 +299,7 @@ struct Options {
         options.quadrature_points = quadrature_points;
         options.max_iterations = max_iterations;
         options.dimension = dimension;
+        options.continuation = continuation;
         options.relative_decrease = relative_decrease;
         options.tension = tension;
         options.bending = bending;

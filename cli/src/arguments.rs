@@ -33,10 +33,26 @@ Input:
     (G2Joint b (20,-0.5,0) (Fixed Tangent (1,0,0)))
     (G2Curve coving Open (a,b))
 
+  A joint may slide on a line or in a plane: after the word stand the point where it starts and the line's direction or
+  the plane's normal.
+
+    (G2Joint a Line (0.5,-12,0) (0,1,0) (Fixed Tangent (0,1,0)))
+    (G2Joint b Plane (1,0.5,0.3) (1,0,0))
+
+  Of a curvature the size alone may be kept. Its direction starts at that of the vector; with a number in its place, at that
+  of the start curve, and the joint needs a tangent.
+
+    (G2Joint c (0,0,0) (Size Curvature (0.3,0,0)))
+    (G2Joint d (2,1,0) (Initial Tangent (1,0,0)) (Size Curvature 0.27))
+
+  Where tangent or curvature are not common to both sides, Arriving or Leaving gives one: (Fixed Tangent Leaving (1,0,0)).
+
 Examples:
   minvar curve coving.mvc --svg coving.svg
-  minvar curve coving.mvc --elements-per-span 4 --json - --quiet
-  minvar curve coving.mvc --nc coving.ngc --feed 600 --safe-height 5 --depth -2 --tolerance 0.005
+  minvar curve coving.mvc --tolerance 1e-6 --json - --quiet
+  minvar curve coving.mvc --nc coving.ngc --feed 600 --safe-height 5 --depth -2 --path-tolerance 0.005
+  minvar curve antipodal.mvc --functional si-mvc
+  minvar curve moved.mvc --reference coving.json --reference-weight 0.8
   minvar curve - --csv samples.csv --samples 101 < coving.mvc
 
 Exit codes:
@@ -55,9 +71,18 @@ pub(crate) struct CurveArguments {
     #[arg(long, value_enum, ignore_case = true, default_value_t = Functional::Mvc, value_name = "NAME")]
     pub(crate) functional: Functional,
 
-    /// Quintic elements between two joints: more come nearer to the true minimum
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
-    pub(crate) elements_per_span: u32,
+    /// What is added to the functional, and what is asked of the shape.
+    #[command(flatten)]
+    pub(crate) shape: ShapeArguments,
+
+    /// Quintic elements between two joints: more come nearer to the true minimum. With --tolerance the most that a span
+    /// may get [default: 1, with --tolerance 64]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub(crate) elements_per_span: Option<u32>,
+
+    /// How far the curve may be from the true minimum, by an estimate: spans get as many elements as that needs
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    pub(crate) tolerance: Option<f64>,
 
     /// 2 for a planar curve, 3 for one that may leave the plane of its data [default: planar data give a planar curve]
     #[arg(long, value_name = "2|3", value_parser = clap::value_parser!(u32).range(2..=3))]
@@ -66,6 +91,11 @@ pub(crate) struct CurveArguments {
     /// Stop after so many iterations
     #[arg(long, default_value_t = 500, value_name = "N")]
     pub(crate) max_iterations: u32,
+
+    /// Begin under tension and release it in so many stages: leads to the shortest curve where start values lead to a
+    /// longer one
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=16))]
+    pub(crate) continuation: u32,
 
     /// Print no figures
     #[arg(long, short)]
@@ -113,6 +143,54 @@ pub(crate) struct CurveArguments {
     pub(crate) path: PathArguments,
 }
 
+/// What is added to the functional, and what is asked of the shape.
+#[derive(Debug, Args)]
+pub(crate) struct ShapeArguments {
+    /// Add W times the length to the functional: a tension (not with si-mvc and si-mec)
+    #[arg(
+        long,
+        default_value_t = 0.0,
+        value_name = "W",
+        allow_negative_numbers = true,
+        hide_default_value = true
+    )]
+    pub(crate) tension: f64,
+
+    /// Add W times the bending energy ∫ κ² ds to the functional (not with si-mvc and si-mec)
+    #[arg(
+        long,
+        default_value_t = 0.0,
+        value_name = "W",
+        allow_negative_numbers = true,
+        hide_default_value = true
+    )]
+    pub(crate) bending: f64,
+
+    /// Give the curve this length
+    #[arg(
+        long,
+        default_value_t = 0.0,
+        value_name = "L",
+        allow_negative_numbers = true,
+        hide_default_value = true
+    )]
+    pub(crate) length: f64,
+
+    /// A shape to keep to as far as the joints allow: a file that --json wrote, of as many elements (mvc only)
+    #[arg(long, value_name = "FILE", conflicts_with = "tolerance")]
+    pub(crate) reference: Option<PathBuf>,
+
+    /// How much of the reference shape's change of curvature is the aim: 1 keeps the shape, 0 smooths it away
+    #[arg(
+        long,
+        default_value_t = 1.0,
+        value_name = "A",
+        requires = "reference",
+        allow_negative_numbers = true
+    )]
+    pub(crate) reference_weight: f64,
+}
+
 /// A polygon of a picture, in the curve's coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Polygon(pub(crate) Vec<[f64; 3]>);
@@ -138,14 +216,13 @@ fn polygon(text: &str) -> Result<Polygon, String> {
 pub(crate) struct PathArguments {
     /// The greatest distance between path and curve
     #[arg(
-        long = "path-tolerance",
-        visible_alias = "tolerance",
+        long,
         default_value_t = 0.01,
         value_name = "LENGTH",
         requires = "nc",
         allow_negative_numbers = true
     )]
-    pub(crate) tolerance: f64,
+    pub(crate) path_tolerance: f64,
 
     /// The cutting feed, length a minute [default: 600 mm or 24 inches]
     #[arg(long, value_name = "FEED", requires = "nc", allow_negative_numbers = true)]
@@ -216,11 +293,11 @@ impl CurveArguments {
         let all = [("--svg", &self.svg), ("--nc", &self.nc), ("--csv", &self.csv), ("--json", &self.json)];
         all.into_iter().filter_map(|(option, path)| Some((option, Target::new(path.as_deref()?)))).collect()
     }
+}
 
-    /// Whether the constraints come from the standard input.
-    pub(crate) fn reads_stdin(&self) -> bool {
-        self.file == Path::new("-")
-    }
+/// Whether an input comes from the standard input.
+pub(crate) fn is_stdin(file: &Path) -> bool {
+    file == Path::new("-")
 }
 
 #[cfg(test)]
@@ -237,7 +314,7 @@ mod tests {
     fn the_definition_is_sound_and_the_helps_examples_parse() {
         Arguments::command().debug_assert();
         let examples: Vec<_> = CURVE_HELP.lines().filter(|line| line.starts_with("  minvar ")).collect();
-        assert_eq!(examples.len(), 4);
+        assert_eq!(examples.len(), 6);
         for example in examples {
             let line = example.split(" < ").next().unwrap_or_default();
             parse(line).unwrap_or_else(|error| panic!("{line}: {error}"));
@@ -247,11 +324,11 @@ mod tests {
     #[test]
     fn a_path_takes_its_options_and_has_defaults() {
         let path = parse("minvar curve a --nc b").expect("complete").path;
-        assert_eq!((path.feed, path.safe_height, path.depth, path.tolerance), (None, None, 0.0, 0.01));
+        assert_eq!((path.feed, path.safe_height, path.depth, path.path_tolerance), (None, None, 0.0, 0.01));
         let path =
             parse("minvar curve a --nc b --feed 100 --safe-height 5 --depth -1.5").expect("complete").path;
         assert_eq!(
-            (path.feed, path.safe_height, path.depth, path.tolerance),
+            (path.feed, path.safe_height, path.depth, path.path_tolerance),
             (Some(100.0), Some(5.0), -1.5, 0.01)
         );
     }
@@ -271,7 +348,8 @@ mod tests {
         for option in [
             "--feed 1",
             "--depth 1",
-            "--tolerance 1",
+            "--path-tolerance 1",
+            "--reference-weight 1",
             "--units inch",
             "--plane yz",
             "--chords",
@@ -281,6 +359,33 @@ mod tests {
             assert_eq!(error.kind(), ErrorKind::MissingRequiredArgument, "{option}");
         }
         assert!(parse("minvar curve a").is_ok(), "defaults do not count");
+    }
+
+    #[test]
+    fn a_tolerance_is_the_curves_and_a_path_has_its_own() {
+        let found = parse("minvar curve a --tolerance 1e-6 --nc b --path-tolerance 0.5").expect("complete");
+        assert_eq!((found.tolerance, found.path.path_tolerance), (Some(1e-6), 0.5));
+        assert_eq!(found.elements_per_span, None);
+        let found = parse("minvar curve a --tension 1 --bending 2 --length 3").expect("complete").shape;
+        assert_eq!((found.tension, found.bending, found.length), (1.0, 2.0, 3.0));
+        let found = parse("minvar curve a --reference r.json").expect("complete").shape;
+        assert_eq!((found.reference.as_deref(), found.reference_weight), (Some(Path::new("r.json")), 1.0));
+        let error = parse("minvar curve a --reference r --tolerance 1").expect_err("both");
+        assert_eq!(error.kind(), ErrorKind::ArgumentConflict);
+    }
+
+    #[test]
+    fn functionals_take_any_case() {
+        for (name, functional) in [
+            ("mvc", Functional::Mvc),
+            ("MEC", Functional::Mec),
+            ("si-mvc", Functional::SiMvc),
+            ("SI-Mec", Functional::SiMec),
+        ] {
+            let found = parse(&format!("minvar curve a --functional {name}")).expect(name).functional;
+            assert_eq!((found, found.name()), (functional, name.to_lowercase().as_str()));
+        }
+        assert!(parse("minvar curve a --functional simvc").is_err());
     }
 
     #[test]

@@ -13,11 +13,22 @@
 //! case, names may not. Where a joint splits a tangent (`G0Joint`) or a curvature (`G0Joint`, `G1Joint`), a constraint
 //! holds for both sides; our extension `(Fixed Tangent Arriving (0,1,0))` or `Leaving` gives it for one.
 //!
+//! Two more extensions: a joint slides from a point on a line with a direction or in a plane with a normal,
+//!
+//! ```text
+//! (G2Joint a Line (0.5,-12,0) (0,1,0))
+//! (G2Joint b Plane (1,0,0) (0,0,1))
+//! ```
+//!
+//! and `(Size Curvature (0.27,0,0))` keeps a curvature's size, its direction being where the search starts;
+//! `(Size Curvature 0.27)` leaves that to the start curve and needs a tangent.
+//!
 //! Whether the numbers make sense as a curve is for the kernel to say: [`NamedJoint`] keeps the place for its answer.
 
 mod fault;
 mod parse;
 mod point;
+mod position;
 mod resolve;
 #[cfg(test)]
 mod tests;
@@ -45,7 +56,7 @@ pub(crate) struct NamedJoint {
     pub(crate) name: String,
     /// What is continuous here.
     pub(crate) continuity: Continuity,
-    /// The position: fixed, or a start value.
+    /// The position: fixed, a start value, or sliding.
     pub(crate) position: Given,
     /// The tangent arriving and leaving: the same unless the joint is [`Continuity::G0`]. Any length but zero.
     pub(crate) tangent: [Given; 2],
@@ -77,6 +88,12 @@ pub(crate) enum Given {
     Initial([f64; 3]),
     /// A value to keep.
     Fixed([f64; 3]),
+    /// Of a curvature: its size is kept; a value along the tangent says nothing of the direction.
+    Size([f64; 3]),
+    /// Of a position: it slides from a point on the line along a direction, which is not zero.
+    OnLine([f64; 3], [f64; 3]),
+    /// Of a position: it slides from a point in the plane across a normal, which is not zero.
+    OnPlane([f64; 3], [f64; 3]),
 }
 
 impl Given {

@@ -12,7 +12,7 @@ mod solve;
 mod tables;
 mod trace;
 
-use arguments::{Arguments, Command, CurveArguments};
+use arguments::{Arguments, Command, CurveArguments, is_stdin};
 use clap::Parser;
 use constraints::{Fault, Reading, Specification};
 use minvar::solve::Status;
@@ -21,6 +21,7 @@ use picture::{Mark, Picture, figure};
 use solve::{Options, Solution};
 use std::fmt::Write as _;
 use std::io::{self, Read as _, Write as _};
+use std::path::Path;
 use std::process::ExitCode;
 use trace::Trace;
 
@@ -58,19 +59,14 @@ fn curve(arguments: &CurveArguments) -> Result<Status, Failure> {
     let targets = arguments.targets();
     check_targets(arguments, &targets)?;
 
-    let bytes = read(arguments)?;
-    let file = if arguments.reads_stdin() { "<stdin>".into() } else { arguments.file.to_string_lossy() };
+    let bytes = read(&arguments.file)?;
+    let file = if is_stdin(&arguments.file) { "<stdin>".into() } else { arguments.file.to_string_lossy() };
     let show = |fault: &Fault| fault.render(&file, true);
     let Reading { specification, warnings } =
         constraints::read(&bytes).map_err(|fault| Failure::Input(show(&fault)))?;
     warnings.iter().for_each(|warning| complain(&show(warning)));
 
-    let options = Options {
-        functional: arguments.functional,
-        elements_per_span: arguments.elements_per_span,
-        max_iterations: arguments.max_iterations,
-        dimension: arguments.dimension.unwrap_or(0),
-    };
+    let options = options(arguments)?;
     let solution = solve::solve(&specification, &options).map_err(|error| {
         Failure::Input(match error.joint.and_then(|joint| specification.joints.get(joint)) {
             Some(joint) => show(&constraints::fault_at(&bytes, joint, error.message)),
@@ -92,11 +88,15 @@ fn curve(arguments: &CurveArguments) -> Result<Status, Failure> {
         }
     }
     if solution.status != Status::Converged {
-        complain(&format!("warning: {}", solution.status.sentence()));
+        complain(&format!("warning: {}", advice(&options, &solution)));
+    }
+    if options.has_tolerance() && options.elements_per_span == 1 {
+        complain(
+            "warning: one element a span is not compared with more: allow more of them (--elements-per-span)",
+        );
     }
     let off = (solution.fine_value - solution.value).abs();
-    let power = if solution.functional == solve::Functional::Mec { 1 } else { 3 };
-    let nothing = NOTHING / (0..power).map(|_| solution.length).product::<f64>();
+    let nothing = NOTHING / (0..solution.functional.scale_power()).map(|_| solution.length).product::<f64>();
     if off > TRUSTED * solution.value.abs() + nothing {
         complain(&format!(
             "warning: a finer quadrature gives {} for the functional: the curve is too wild for its elements, try more \
@@ -112,12 +112,16 @@ const TRUSTED: f64 = 1e-4;
 /// A functional below this, in the curve's length, is nothing.
 const NOTHING: f64 = 1e-12;
 
-/// No two outputs in one place, and none in the input's.
+/// No two outputs in one place, and none in an input's.
 fn check_targets(arguments: &CurveArguments, targets: &[(&'static str, Target)]) -> Result<(), Failure> {
-    let mut all = targets.to_vec();
-    if !arguments.reads_stdin() {
-        all.insert(0, ("FILE", Target::new(&arguments.file)));
+    let inputs = [("FILE", Some(&arguments.file)), ("--reference", arguments.shape.reference.as_ref())];
+    let inputs: Vec<_> = inputs.into_iter().filter_map(|(name, path)| Some((name, path?))).collect();
+    if inputs.len() == 2 && inputs.iter().all(|(_, path)| is_stdin(path)) {
+        return Err(Failure::Input("error: FILE and --reference are both the standard input".into()));
     }
+    let files = inputs.into_iter().filter(|(_, path)| !is_stdin(path));
+    let all: Vec<_> =
+        files.map(|(name, path)| (name, Target::new(path))).chain(targets.iter().cloned()).collect();
     match output::same_twice(&all) {
         Some((a, b)) => Err(Failure::Input(format!("error: {a} and {b} are the same file"))),
         None => Ok(()),
@@ -127,12 +131,12 @@ fn check_targets(arguments: &CurveArguments, targets: &[(&'static str, Target)])
 /// More than a million joints; what is larger is a device or a mistake.
 const LARGEST_INPUT: u64 = 256 << 20;
 
-fn read(arguments: &CurveArguments) -> Result<Vec<u8>, Failure> {
+/// All of a file, or of the standard input.
+fn read(file: &Path) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
-    let (name, result) = if arguments.reads_stdin() {
+    let (name, result) = if is_stdin(file) {
         ("the standard input".into(), io::stdin().lock().take(LARGEST_INPUT + 1).read_to_end(&mut bytes))
     } else {
-        let file = &arguments.file;
         (
             file.to_string_lossy(),
             std::fs::File::open(file).and_then(|file| file.take(LARGEST_INPUT + 1).read_to_end(&mut bytes)),
@@ -140,10 +144,76 @@ fn read(arguments: &CurveArguments) -> Result<Vec<u8>, Failure> {
     };
     match result {
         Ok(_) if bytes.len() as u64 > LARGEST_INPUT => {
-            Err(Failure::Input(format!("error: {name} is larger than 256 MiB: that is no constraint file")))
+            Err(Failure::Input(format!("error: {name} is larger than 256 MiB: too large for an input")))
         }
         Ok(_) => Ok(bytes),
         Err(error) => Err(Failure::Input(format!("error: cannot read {name}: {}", output::reason(&error)))),
+    }
+}
+
+/// How to solve, the reference shape read.
+fn options(arguments: &CurveArguments) -> Result<Options, Failure> {
+    let shape = &arguments.shape;
+    let reference = match &shape.reference {
+        None => None,
+        Some(file) => {
+            if arguments.functional != solve::Functional::Mvc {
+                return Err(Failure::Input("error: --reference is for --functional mvc alone".into()));
+            }
+            let name = if is_stdin(file) { "<stdin>".into() } else { file.to_string_lossy().into_owned() };
+            let elements = tables::elements(&read(file)?).map_err(|error| {
+                Failure::Input(format!("error: --reference {name} is no file that --json wrote: {error}"))
+            })?;
+            Some(solve::Shape { name, elements, weight: shape.reference_weight })
+        }
+    };
+    let tolerance = arguments.tolerance.unwrap_or(0.0);
+    Ok(Options {
+        functional: arguments.functional,
+        tension: shape.tension,
+        bending: shape.bending,
+        length: shape.length,
+        tolerance,
+        elements_per_span: arguments.elements_per_span.unwrap_or(if tolerance > 0.0 {
+            MOST_ELEMENTS
+        } else {
+            1
+        }),
+        max_iterations: arguments.max_iterations,
+        continuation: arguments.continuation,
+        dimension: arguments.dimension.unwrap_or(0),
+        reference,
+    })
+}
+
+/// With a tolerance a span has no more elements than this, if nothing else is said.
+const MOST_ELEMENTS: u32 = 64;
+
+/// What to do about a curve that has not converged.
+fn advice(options: &Options, solution: &Solution) -> String {
+    match solution.status {
+        Status::Unbounded => {
+            let growth = "unbounded: the curve grows without limit while the functional sinks";
+            let weights = match (options.length > 0.0, options.tension > 0.0) {
+                (false, false) => "add a constraint, a --tension or a --length",
+                (false, true) => "add a constraint or a --length",
+                _ => "add a constraint",
+            };
+            match solution.functional.scale_invariant() {
+                Some(other) => format!(
+                    "{growth}; the scale-invariant functional {0} has a minimum: --functional {0}; or {weights}",
+                    other.name()
+                ),
+                None => format!("{growth}; {weights}"),
+            }
+        }
+        Status::Stalled if solution.error.is_some_and(|error| error > options.tolerance) => {
+            format!(
+                "stalled: {} elements a span do not reach the tolerance; allow more (--elements-per-span) or a larger one",
+                options.elements_per_span
+            )
+        }
+        status => status.sentence().to_owned(),
     }
 }
 
@@ -155,7 +225,7 @@ fn outputs(
     options: &Options,
     solution: &Solution,
 ) -> Result<(Vec<output::Prepared>, String), Failure> {
-    let mut figures = figures(specification, solution);
+    let mut figures = figures(specification, options, solution);
     let mut prepared = Vec::new();
     for (option, target) in targets {
         let content = match *option {
@@ -188,19 +258,39 @@ fn outputs(
 }
 
 /// The figures as text, a line each.
-fn figures(specification: &Specification, solution: &Solution) -> String {
+fn figures(specification: &Specification, options: &Options, solution: &Solution) -> String {
     let closed = if specification.closed { "closed" } else { "open" };
     let joints = counted(specification.joints.len(), "joint");
     let elements = counted(solution.elements.len(), "element");
     let mut out = format!("curve       {}, {closed}, {joints}, {elements}\n", specification.name);
     let iterations = counted(solution.iterations, "iteration");
     let _ = writeln!(out, "status      {} after {iterations}", solution.status.name());
-    let _ = writeln!(out, "functional  {} = {}", solution.functional.name(), rounded(solution.value, 10));
-    let _ = writeln!(out, "length      {}", rounded(solution.length, 10));
+    let _ = writeln!(out, "functional  {} = {}", functional(options), rounded(solution.value, 10));
+    if let Some(shape) = &options.reference {
+        let _ = writeln!(out, "reference   {}, weight {:?}", shape.name, shape.weight);
+    }
+    if options.has_tolerance() {
+        let error =
+            solution.error.map_or("not known".into(), |error| format!("{} (estimated)", rounded(error, 3)));
+        let _ = writeln!(out, "error       {error}, tolerance {:?}", options.tolerance);
+    }
+    let asked = if options.length > 0.0 { format!(" (given: {:?})", options.length) } else { String::new() };
+    let _ = writeln!(out, "length      {}{asked}", rounded(solution.length, 10));
     let _ = writeln!(out, "variation   {}", rounded(solution.variation, 10));
     let _ = writeln!(out, "bending     {}", rounded(solution.bending, 10));
     let [low, high] = [solution.curvature_min, solution.curvature_max].map(|kappa| rounded(kappa, 10));
     let _ = writeln!(out, "curvature   {low} to {high}");
+    out
+}
+
+/// `mvc + 0.5 length`
+fn functional(options: &Options) -> String {
+    let mut out = options.functional.name().to_owned();
+    for (weight, of) in [(options.bending, "bending"), (options.tension, "length")] {
+        if weight > 0.0 {
+            let _ = write!(out, " + {weight:?} {of}");
+        }
+    }
     out
 }
 
@@ -222,12 +312,14 @@ fn svg(
 ) -> String {
     // A file is usually named after its curve, and the curve `test`.
     let stem = arguments.file.file_stem().map(|stem| stem.to_string_lossy().replace('_', " "));
-    let title = stem.filter(|_| !arguments.reads_stdin()).unwrap_or_else(|| specification.name.clone());
+    let title = stem.filter(|_| !is_stdin(&arguments.file)).unwrap_or_else(|| specification.name.clone());
     let obstacles: Vec<_> = arguments.polygon.iter().map(|polygon| polygon.0.clone()).collect();
-    let functional = match solution.functional {
-        solve::Functional::Mvc => "MVC  ∫ (dκ/ds)² ds",
-        solve::Functional::Mec => "MEC  ∫ κ² ds",
-    };
+    let mut functional = solution.functional.formula().to_owned();
+    for (weight, of) in [(options.bending, "∫ κ² ds"), (options.tension, "L")] {
+        if weight > 0.0 {
+            let _ = write!(functional, " + {} {of}", figure(weight, 4));
+        }
+    }
     let mut lines = vec![format!(
         "{functional} = {}  ·  length {}  ·  curvature {} … {}",
         figure(solution.value, 7),
@@ -235,6 +327,13 @@ fn svg(
         figure(solution.curvature_min, 5),
         figure(solution.curvature_max, 5)
     )];
+    if let Some(error) = solution.error {
+        let elements = counted(solution.elements.len(), "element");
+        lines.push(format!("{elements}, about {} from the true minimum", figure(error, 2)));
+    }
+    if let Some(shape) = &options.reference {
+        lines.push(format!("reference shape {}, weight {}", shape.name, figure(shape.weight, 4)));
+    }
     if solution.status != Status::Converged {
         lines.push(format!("Not converged: {}", solution.status.name()));
     }
@@ -243,7 +342,7 @@ fn svg(
         figures: &lines,
         elements: &solution.elements,
         closed: specification.closed,
-        joints: &Mark::of(specification, options.elements_per_span as usize),
+        joints: &Mark::of(specification, &solution.starts),
         obstacles: &obstacles,
     })
 }

@@ -28,7 +28,7 @@ pub(crate) fn program(elements: &[Element], arguments: &PathArguments) -> Result
         decimals: arguments.decimals,
         comments: arguments.comments,
         ..GcodeOptions::new(
-            arguments.tolerance,
+            arguments.path_tolerance,
             arguments.feed.unwrap_or(feed),
             arguments.safe_height.unwrap_or(top + arguments.depth + clearance),
         )

@@ -12,7 +12,7 @@ mod view;
 
 pub(crate) use scale::figure;
 
-use crate::constraints::{NamedJoint, Specification};
+use crate::constraints::{Given, NamedJoint, Specification};
 use crate::trace::{STRAIGHT, Trace, Vector};
 use minvar::curve::Element;
 use page::{Anchor, Page, width};
@@ -36,7 +36,7 @@ pub(crate) struct Picture<'a> {
 }
 
 /// A joint in a picture.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Mark {
     /// The label.
     pub(crate) name: String,
@@ -44,23 +44,39 @@ pub(crate) struct Mark {
     pub(crate) element: usize,
     /// Whether its position was given.
     pub(crate) fixed: bool,
+    /// On what its position slides.
+    pub(crate) slide: Option<Slide>,
     /// Whether its tangent was given, arriving and leaving.
     pub(crate) tangent: [bool; 2],
     /// Whether its curvature was given on any side.
     pub(crate) curvature: bool,
 }
 
+/// On what a joint slides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Slide {
+    /// On a line of this direction.
+    Line(Vector),
+    /// In a plane across this normal.
+    Plane(Vector),
+}
+
 impl Mark {
-    /// The marks of a specification's joints.
-    pub(crate) fn of(specification: &Specification, elements_per_span: usize) -> Vec<Self> {
-        let mark = |(index, joint): (usize, &NamedJoint)| Self {
+    /// The marks of a specification's joints, each with the element that begins there.
+    pub(crate) fn of(specification: &Specification, starts: &[usize]) -> Vec<Self> {
+        let mark = |(joint, &element): (&NamedJoint, &usize)| Self {
             name: joint.name.clone(),
-            element: index * elements_per_span,
+            element,
             fixed: joint.position.is_fixed(),
+            slide: match joint.position {
+                Given::OnLine(_, direction) => Some(Slide::Line(direction)),
+                Given::OnPlane(_, normal) => Some(Slide::Plane(normal)),
+                _ => None,
+            },
             tangent: joint.tangent.map(|tangent| tangent.is_fixed()),
-            curvature: joint.curvature.iter().any(|curvature| curvature.is_fixed()),
+            curvature: joint.curvature.iter().any(|given| matches!(given, Given::Fixed(_) | Given::Size(_))),
         };
-        specification.joints.iter().enumerate().map(mark).collect()
+        specification.joints.iter().zip(starts).map(mark).collect()
     }
 }
 
@@ -89,6 +105,7 @@ text { font-family: 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-
 .torsion { fill: none; stroke: #009e73; stroke-width: 1.4; stroke-linejoin: round }
 .fixed { fill: #1a1a1a; stroke: #fff; stroke-width: 1.2 }
 .free { fill: #fff; stroke: #1a1a1a; stroke-width: 1.4 }
+.slide { stroke: #1a1a1a; stroke-width: 1; stroke-dasharray: 4 3 }
 .ring { fill: none; stroke: #1a1a1a; stroke-width: 1 }
 .tangent { stroke: #1a1a1a; stroke-width: 1.3; stroke-linecap: round }
 ";
@@ -150,7 +167,8 @@ fn legend(page: &mut Page, mut y: f64, picture: &Picture<'_>, steepest: Option<f
         (true, "curve", "curve".to_owned()),
         (comb.is_some(), "comb", comb.unwrap_or_default()),
         (joints.iter().any(|mark| mark.fixed), "fixed", "fixed point".to_owned()),
-        (joints.iter().any(|mark| !mark.fixed), "free", "free point".to_owned()),
+        (joints.iter().any(|mark| !mark.fixed && mark.slide.is_none()), "free", "free point".to_owned()),
+        (joints.iter().any(|mark| mark.slide.is_some()), "slide", "sliding point".to_owned()),
         (joints.iter().any(|mark| mark.tangent != [false; 2]), "tangent", "fixed tangent".to_owned()),
         (joints.iter().any(|mark| mark.curvature), "ring", "fixed curvature".to_owned()),
         (!picture.obstacles.is_empty(), "obstacle", "keep clear".to_owned()),
@@ -173,6 +191,10 @@ fn legend(page: &mut Page, mut y: f64, picture: &Picture<'_>, steepest: Option<f
                 }
             }
             "tangent" => page.line("tangent", left, right),
+            "slide" => {
+                page.line("slide", [x - 1.0, middle[1]], [x + 17.0, middle[1]]);
+                page.circle("free", middle, DOT);
+            }
             "ring" => {
                 page.circle("ring", middle, RING);
                 page.circle("fixed", middle, DOT);

@@ -3,7 +3,8 @@
 use crate::constraints::Specification;
 use crate::solve::{Options, Solution};
 use crate::trace::Trace;
-use serde::Serialize;
+use minvar::curve::Element;
+use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
 /// The first line of the CSV file: `t…` unit tangent, `k…` curvature vector.
@@ -52,6 +53,32 @@ struct Report<'a> {
     fine_value: f64,
     gradient: f64,
     linearisations: usize,
+    /// The estimated distance from the true minimum, where a tolerance was asked for.
+    error: Option<f64>,
+    options: Asked<'a>,
+}
+
+/// What was asked for beyond the functional; 0 where it was not.
+#[derive(Serialize)]
+struct Asked<'a> {
+    tension: f64,
+    bending: f64,
+    length: f64,
+    tolerance: f64,
+    reference: Option<&'a str>,
+    reference_weight: Option<f64>,
+}
+
+/// What a reference shape needs of such a file.
+#[derive(Deserialize)]
+struct Shape {
+    elements: Vec<[[f64; 3]; 6]>,
+}
+
+/// The elements of a file that `--json` wrote, or why they cannot be read.
+pub(crate) fn elements(bytes: &[u8]) -> Result<Vec<Element>, String> {
+    let shape: Shape = serde_json::from_slice(bytes).map_err(|error| error.to_string())?;
+    Ok(shape.elements.into_iter().map(|rows| Element { rows }).collect())
 }
 
 /// The solution as JSON, every number with the digits that read back as the same number.
@@ -78,6 +105,15 @@ pub(crate) fn json(
         fine_value: solution.fine_value,
         gradient: solution.gradient,
         linearisations: solution.linearisations,
+        error: solution.error,
+        options: Asked {
+            tension: options.tension,
+            bending: options.bending,
+            length: options.length,
+            tolerance: options.tolerance,
+            reference: options.reference.as_ref().map(|shape| shape.name.as_str()),
+            reference_weight: options.reference.as_ref().map(|shape| shape.weight),
+        },
     };
     let text = serde_json::to_string(&report).map_err(|error| format!("cannot write JSON: {error}"))?;
     Ok(text + "\n")
@@ -89,7 +125,6 @@ mod tests {
     use crate::constraints;
     use crate::solve::Functional;
     use crate::trace::shapes;
-    use minvar::curve::Element;
     use minvar::solve::Status;
     use serde_json::Value;
 
@@ -99,6 +134,7 @@ mod tests {
             iterations: 7,
             linearisations: 8,
             functional: Functional::Mvc,
+            error: None,
             value: 0.1,
             fine_value: 0.1,
             gradient: 0.0,
@@ -107,6 +143,7 @@ mod tests {
             bending: 4.0,
             curvature_min: -5.0,
             curvature_max: 6.0,
+            starts: vec![0, elements.len()],
             elements,
         }
     }
@@ -135,8 +172,7 @@ mod tests {
     fn json_has_the_promised_fields_first_and_every_digit() {
         let text = "(G2Joint a (0,0,0)) (G2Joint \"b\" (1,0,0)) (G2Curve c Open (a,\"b\"))";
         let specification = constraints::read(text.as_bytes()).expect("a curve").specification;
-        let options =
-            Options { functional: Functional::Mvc, elements_per_span: 1, max_iterations: 9, dimension: 0 };
+        let options = Options { tension: 0.1, bending: 0.2, ..Options::PLAIN };
         let solution = solution(vec![shapes::quarter(1.0 / 3.0)]);
         let text = json(&specification, &options, &solution).expect("JSON");
         let promised = [
@@ -161,10 +197,30 @@ mod tests {
         assert_eq!(value["length"].as_f64(), Some(1.0 / 3.0));
         assert_eq!(value["variation"].as_f64(), Some(1e-300));
         assert_eq!(value["joints"][1], "\"b\"");
+        assert_eq!(
+            (value["options"]["tension"].as_f64(), value["options"]["bending"].as_f64()),
+            (Some(0.1), Some(0.2))
+        );
+        assert!(value["error"].is_null() && value["options"]["reference"].is_null());
         for (row, expected) in solution.elements[0].rows.iter().enumerate() {
             for d in 0..3 {
                 assert_eq!(value["elements"][0][row][d].as_f64(), Some(expected[d]));
             }
+        }
+        assert_eq!(elements(text.as_bytes()), Ok(solution.elements), "what was written is read again");
+    }
+
+    #[test]
+    fn what_is_no_chain_of_elements_is_refused_in_words() {
+        for (text, words) in [
+            ("", "EOF"),
+            ("[1]", "expected"),
+            ("{}", "missing field `elements`"),
+            ("{\"elements\":[[[0,0,0]]]}", "expected an array of length 6"),
+            ("{\"elements\":[[[0,0,null],[0,0,0],[0,0,0],[0,0,0],[0,0,0],[0,0,0]]]}", "expected f64"),
+        ] {
+            let error = elements(text.as_bytes()).expect_err(text);
+            assert!(error.contains(words), "{text}: {error}");
         }
     }
 }

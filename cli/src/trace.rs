@@ -75,7 +75,7 @@ pub(crate) struct Trace {
     /// The coordinate plane that the curve keeps to.
     pub(crate) plane: Option<Plane>,
     /// The normal of the plane, also an oblique one, about which curvature is signed.
-    normal: Option<Vector>,
+    pub(crate) normal: Option<Vector>,
     /// The arc length at each element's start, and at the end of the last.
     pub(crate) starts: Vec<f64>,
     /// The samples: each element's from `t = 0` to `t = 1`, so that a joint shows both its sides.

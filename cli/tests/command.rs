@@ -7,6 +7,7 @@ use std::process::{Command, Output, Stdio};
 
 const WICKET: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/curves/wicket.mvc");
 const WOODFORD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/curves/woodford.mvc");
+const COVING_SLIDE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/curves/coving_slide.mvc");
 const ANTIPODAL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/curves/antipodal_s.mvc");
 
 fn minvar(folder: &Path) -> Command {
@@ -83,6 +84,23 @@ fn help_goes_to_the_standard_output() {
     let (code, out, error) = run(minvar(folder.path()).arg("--help"));
     assert_eq!((code, error.as_str()), (0, ""));
     assert!(out.contains("Examples:") && out.contains("Exit codes:"));
+    let words = [
+        "si-mvc:",
+        "si-mec:",
+        "--tension <W>",
+        "--bending <W>",
+        "--length <L>",
+        "--tolerance <LENGTH>",
+        "--path-tolerance <LENGTH>",
+        "--reference <FILE>",
+        "--reference-weight <A>",
+        "a Line (0.5,-12,0) (0,1,0)",
+        "b Plane (1,0.5,0.3) (1,0,0)",
+        "(Size Curvature 0.27)",
+    ];
+    for word in words {
+        assert!(out.contains(word), "{word} in {out}");
+    }
 }
 
 #[test]
@@ -164,4 +182,205 @@ fn a_reader_that_goes_away_is_no_error() {
     assert_eq!(&first, b"element");
     let Output { status, stderr, .. } = child.wait_with_output().expect("it ends");
     assert_eq!((status.code(), stderr.as_slice()), (Some(0), b"".as_slice()));
+}
+
+/// The JSON of a curve.
+fn json(command: &mut Command) -> serde_json::Value {
+    let (code, out, error) = run(command.args(["--json", "-", "--quiet"]));
+    assert_eq!((code, error.as_str()), (0, ""));
+    serde_json::from_str(&out).expect("JSON")
+}
+
+fn number(value: &serde_json::Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+#[test]
+fn an_unbounded_curve_is_told_which_functional_has_a_minimum() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (functional, other) in [("mvc", "si-mvc"), ("MEC", "si-mec")] {
+        let (code, _, error) = run(minvar(folder.path()).args([ANTIPODAL, "--functional", functional]));
+        let words = format!(
+            "warning: unbounded: the curve grows without limit while the functional sinks; the scale-invariant functional \
+             {other} has a minimum: --functional {other}; or add a constraint, a --tension or a --length\n"
+        );
+        assert!(code == 1 && error.starts_with(&words), "{code} {error}");
+        let (code, out, error) = run(minvar(folder.path()).args([ANTIPODAL, "--functional", other]));
+        assert_eq!((code, error.as_str()), (0, ""));
+        assert!(out.contains(&format!("\nfunctional  {other} = ")), "{out}");
+    }
+    for remedy in [["--tension", "0.1"], ["--length", "12"]] {
+        assert_eq!(run(minvar(folder.path()).arg(ANTIPODAL).args(remedy)).0, 0, "{remedy:?}");
+    }
+}
+
+#[test]
+fn a_tension_a_bending_term_and_a_length_are_minimised_with_and_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let weights = ["--tension", "0.5", "--bending", "0.25", "--svg", "a.svg"];
+    let (code, out, error) = run(minvar(folder.path()).arg(WOODFORD).args(weights));
+    assert_eq!((code, error.as_str()), (0, ""));
+    assert!(out.contains("\nfunctional  mvc + 0.25 bending + 0.5 length = "), "{out}");
+    let svg = fs::read_to_string(folder.path().join("a.svg")).expect("a picture");
+    assert!(svg.contains("MVC  ∫ (dκ/ds)² ds + 0.25 ∫ κ² ds + 0.5 L = "), "{svg}");
+    let value = json(minvar(folder.path()).arg(WOODFORD).args(&weights[..4]));
+    let sum = number(&value["variation"]) + 0.25 * number(&value["bending"]) + 0.5 * number(&value["length"]);
+    assert!((number(&value["value"]) - sum).abs() < 1e-6, "{value}");
+    assert_eq!((number(&value["options"]["tension"]), number(&value["options"]["bending"])), (0.5, 0.25));
+
+    let (code, out, _) = run(minvar(folder.path()).args([WOODFORD, "--length", "9"]));
+    assert!(code == 0 && out.contains(" (given: 9.0)\n"), "{out}");
+    let value = json(minvar(folder.path()).args([WOODFORD, "--length", "9"]));
+    assert!((number(&value["length"]) - 9.0).abs() < 1e-9 && number(&value["options"]["length"]) == 9.0);
+}
+
+#[test]
+fn a_tolerance_gives_as_many_elements_as_it_needs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let tolerance = ["--tolerance", "1e-8", "--svg", "a.svg"];
+    let (code, out, error) = run(minvar(folder.path()).arg(WOODFORD).args(tolerance));
+    assert_eq!((code, error.as_str()), (0, ""));
+    assert!(out.contains(" (estimated), tolerance 1e-8\n"), "{out}");
+    let value = json(minvar(folder.path()).arg(WOODFORD).args(tolerance));
+    let count = value["elements"].as_array().map_or(0, Vec::len);
+    assert!(count > 6 && count < 6 * 64 && number(&value["elements_per_span"]) == 64.0, "{count}");
+    let error = number(&value["error"]);
+    assert!(error > 0.0 && error <= 1e-8, "{error}");
+    assert!((number(&value["variation"]) - 1.153_720_84).abs() < 2e-8);
+    let svg = fs::read_to_string(folder.path().join("a.svg")).expect("a picture");
+    assert!(svg.contains(&format!("{count} elements, about ")), "{svg}");
+    // The joints are marked where they are: those of the plot at the lengths that the plain curve has there.
+    let mut plain = minvar(folder.path());
+    run(plain.args([WOODFORD, "--elements-per-span", "8", "--svg", "b.svg"]));
+    let stations = |name: &str| -> Vec<f64> {
+        let text = fs::read_to_string(folder.path().join(name)).expect(name);
+        let document = roxmltree::Document::parse(&text).expect("XML");
+        let lines = document.descendants().filter(|node| node.attribute("class") == Some("station"));
+        lines.map(|line| line.attribute("x1").and_then(|x| x.parse().ok()).expect("x1")).collect()
+    };
+    let (found, wanted) = (stations("a.svg"), stations("b.svg"));
+    assert_eq!((found.len(), wanted.len()), (7, 7));
+    assert!(found.iter().zip(&wanted).all(|(a, b)| (a - b).abs() < 0.1), "{found:?} {wanted:?}");
+
+    let few = ["--tolerance", "1e-10", "--elements-per-span", "2"];
+    let (code, out, error) = run(minvar(folder.path()).arg(WOODFORD).args(few));
+    assert!(code == 1 && out.contains("\nstatus      stalled after"), "{code} {out}");
+    assert!(error.starts_with("warning: stalled: 2 elements a span do not reach the tolerance"), "{error}");
+    let one = ["--tolerance", "1e-3", "--elements-per-span", "1"];
+    let (_, out, error) = run(minvar(folder.path()).arg(WOODFORD).args(one));
+    assert!(out.contains("\nerror       not known, tolerance 0.001\n"), "{out}");
+    assert!(error.contains("warning: one element a span is not compared with more"), "{error}");
+}
+
+#[test]
+fn a_reference_shape_is_kept_and_smoothed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (code, ..) =
+        run(minvar(folder.path()).args([WOODFORD, "--functional", "mec", "--json", "r.json", "--quiet"]));
+    assert_eq!(code, 0);
+    let reference = ["--reference", "r.json"];
+    let same = json(minvar(folder.path()).arg(WOODFORD).args(reference));
+    assert!(number(&same["value"]) < 1e-12 && number(&same["options"]["reference_weight"]) == 1.0);
+    let half = json(minvar(folder.path()).arg(WOODFORD).args(reference).args(["--reference-weight", "0.5"]));
+    assert!(number(&half["variation"]) < number(&same["variation"]) - 1e-3);
+    let (_, out, _) =
+        run(minvar(folder.path()).arg(WOODFORD).args(reference).args(["--reference-weight", "0.5"]));
+    assert!(out.contains("\nreference   r.json, weight 0.5\n"), "{out}");
+
+    let refused = |arguments: &[&str]| {
+        let (code, out, error) = run(minvar(folder.path()).args(arguments));
+        assert_eq!((code, out.as_str()), (2, ""), "{arguments:?}");
+        error
+    };
+    assert_eq!(
+        refused(&[WOODFORD, "--reference", "r.json", "--elements-per-span", "2"]),
+        "error: --reference r.json: it has 6 elements and this curve 12; compute both with the same joints and \
+         --elements-per-span\n"
+    );
+    let weight = refused(&[WOODFORD, "--reference", "r.json", "--reference-weight", "nan"]);
+    assert!(weight.starts_with("error: --reference-weight: must be a number from 0 to 1"), "{weight}");
+    assert_eq!(
+        refused(&[WOODFORD, "--reference", "r.json", "--functional", "si-mvc"]),
+        "error: --reference is for --functional mvc alone\n"
+    );
+    let other = refused(&[WOODFORD, "--reference", WICKET]);
+    assert!(other.contains("is no file that --json wrote: expected"), "{other}");
+    assert!(refused(&[WOODFORD, "--reference", "none.json"]).contains("cannot read none.json: no such file"));
+    assert!(
+        refused(&[WOODFORD, "--reference", "r.json", "--json", "./r.json"]).contains("are the same file")
+    );
+    assert!(refused(&["-", "--reference", "-"]).contains("are both the standard input"));
+    let text = fs::read_to_string(folder.path().join("r.json")).expect("the reference");
+    let mut value: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    value["elements"][3][1] = serde_json::json!([0.0, 0.0, 0.0]);
+    fs::write(folder.path().join("bad.json"), value.to_string()).expect("a file");
+    let bad = refused(&[WOODFORD, "--reference", "bad.json"]);
+    assert!(bad.starts_with("error: --reference bad.json: element 3 has "), "{bad}");
+}
+
+#[test]
+fn an_option_out_of_range_is_named_as_the_user_wrote_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for option in ["--tension", "--bending", "--length", "--tolerance"] {
+        for value in ["-1", "nan", "inf"] {
+            let (code, _, error) = run(minvar(folder.path()).args([WOODFORD, option, value]));
+            assert!(
+                code == 2 && error.starts_with(&format!("error: {option}: must be ")),
+                "{option} {value}: {code} {error}"
+            );
+        }
+    }
+    let (code, _, error) =
+        run(minvar(folder.path()).args([WOODFORD, "--functional", "si-mvc", "--tension", "1"]));
+    assert!(
+        code == 2 && error.starts_with("error: --tension: ") && error.contains("scale-invariant"),
+        "{error}"
+    );
+    let (code, _, error) = run(minvar(folder.path()).args([WOODFORD, "--length", "6"]));
+    assert!(code == 2 && error.starts_with("error: --length 6: the length that was asked for is no greater"));
+}
+
+#[test]
+fn a_joint_slides_to_where_the_curve_is_fairest() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let slides = json(minvar(folder.path()).arg(COVING_SLIDE));
+    let start: Vec<f64> = (0..3).map(|d| number(&slides["elements"][0][0][d])).collect();
+    assert!((start[0] - 0.5).abs() < 1e-12 && start[1] > -11.0 && start[2] == 0.0, "{start:?}");
+    let text = fs::read_to_string(COVING_SLIDE).expect("the file");
+    fs::write(folder.path().join("fixed.mvc"), text.replace("Line (0.5,-12,0) (0,1,0)", "(0.5,-12,0)"))
+        .expect("a file");
+    let fixed = json(minvar(folder.path()).arg("fixed.mvc"));
+    assert!(number(&slides["value"]) < 0.9 * number(&fixed["value"]));
+
+    // In a plane, in space, with a tolerance too.
+    let rail = Path::new(COVING_SLIDE).with_file_name("rail_slide.mvc");
+    for more in [[].as_slice(), &["--tolerance", "1e-4", "--svg", "a.svg"]] {
+        let value = json(minvar(folder.path()).arg(&rail).args(more));
+        let rows = value["elements"].as_array().expect("elements");
+        let off = |row: &serde_json::Value| {
+            let d = |i: usize, from: f64| number(&row[0][i]) - from;
+            (d(0, 1.0) + 0.2 * d(1, 0.5) - 0.1 * d(2, 0.3)).abs()
+        };
+        assert!(rows.iter().any(|row| off(row) < 1e-12), "{value}");
+    }
+}
+
+#[test]
+fn a_curvature_of_given_size_keeps_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = Path::new(COVING_SLIDE).with_file_name("size_curvature.mvc");
+    let text = fs::read_to_string(&file).expect("the file");
+    for value in ["0.3", "(0,0.3,0)", "(-0.3,0,0)"] {
+        fs::write(folder.path().join("a.mvc"), text.replace("Curvature 0.3", &format!("Curvature {value}")))
+            .expect("a file");
+        let (code, out, error) = run(minvar(folder.path()).args(["a.mvc", "--csv", "-"]));
+        assert!(code == 0 && error.contains("converged"), "{code} {error}");
+        let kappa: f64 = out
+            .lines()
+            .nth(1)
+            .and_then(|line| line.split(',').nth(12))
+            .and_then(|x| x.parse().ok())
+            .expect("kappa");
+        assert!((kappa - 0.3).abs() < 1e-12, "{value}: {kappa}");
+    }
 }

@@ -344,12 +344,13 @@ const fn field_of(option: OptionName) -> usize {
         OptionName::ElementsPerSpan => 1,
         OptionName::QuadraturePoints => 2,
         OptionName::Dimension => 4,
-        OptionName::RelativeDecrease => 5,
-        OptionName::Tension => 6,
-        OptionName::Bending => 7,
-        OptionName::Length => 8,
-        OptionName::Tolerance => 9,
-        OptionName::ReferenceWeight => 10,
+        OptionName::Continuation => 5,
+        OptionName::RelativeDecrease => 6,
+        OptionName::Tension => 7,
+        OptionName::Bending => 8,
+        OptionName::Length => 9,
+        OptionName::Tolerance => 10,
+        OptionName::ReferenceWeight => 11,
     }
 }
 

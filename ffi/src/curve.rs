@@ -156,6 +156,10 @@ pub struct minvar_options {
     pub max_iterations: u32,
     /// 2 for a planar curve, 3 for a space curve, 0 to find out: planar where all data lie in a plane. Default 0.
     pub dimension: u32,
+    /// Stages of a continuation that starts under tension (thesis 4.10): each solves with a tenth of the tension of the one
+    /// before; the last solution is where the search without it starts. It leads to the minimum of shortest length where
+    /// start values alone lead elsewhere. At most 16. Default 0.
+    pub continuation: u32,
     /// Converged when another step promises to lower the functional by less than this fraction, or 20 iterations
     /// together lowered it by less than a thousand times that; 0 to below 1. Default 1e-12.
     pub relative_decrease: f64,
@@ -300,6 +304,7 @@ unsafe fn options_of(options: *const minvar_options) -> Result<Options, Failure>
         quadrature_points: given.quadrature_points,
         max_iterations: given.max_iterations,
         dimension: given.dimension,
+        continuation: given.continuation,
         relative_decrease: given.relative_decrease,
         tension: given.tension,
         bending: given.bending,
@@ -318,6 +323,7 @@ pub extern "C" fn minvar_options_defaults() -> minvar_options {
         quadrature_points: defaults.quadrature_points,
         max_iterations: defaults.max_iterations,
         dimension: defaults.dimension,
+        continuation: defaults.continuation,
         relative_decrease: defaults.relative_decrease,
         tension: defaults.tension,
         bending: defaults.bending,
@@ -500,6 +506,26 @@ fn report_of(found: &Report) -> minvar_report {
     }
 }
 
+/// What minima are compared by; the status is not read.
+fn ours(report: &minvar_report) -> Report {
+    Report {
+        status: kernel::solve::Status::Converged,
+        planar: report.planar != 0,
+        elements: report.elements,
+        iterations: report.iterations,
+        linearisations: report.linearisations,
+        unknowns: report.unknowns,
+        value: report.value,
+        fine_value: report.fine_value,
+        length: report.length,
+        variation: report.variation,
+        bending: report.bending,
+        error: report.error,
+        gradient: report.gradient,
+        decrement: report.decrement,
+    }
+}
+
 /// Computes a curve (thesis chapter 4).
 ///
 /// `workspace`: `workspace_len` doubles, at least what minvar_curve_workspace_len() says, in any condition; what is left
@@ -584,6 +610,50 @@ pub unsafe extern "C" fn minvar_curve_update(
                 &mut [],
                 &mut watch,
             )?));
+            Ok(())
+        })
+    }
+}
+
+/// Looks for several minima of one curve: from the usual start values, from each start tangent turned round, and from each
+/// span bent the other way or further (thesis 4.10: curves with and without a loop). The list is what these starts lead
+/// to; it need not be complete.
+///
+/// `reports` has room for `reports_len` reports and receives one a minimum, the lowest first. `elements` has room for
+/// `(reports_len + 1)` times minvar_curve_elements_len() elements: the first so many receive the first minimum's, and so on;
+/// the last are scratch. `count` receives the number of minima. `observer` sees every solve begin with iteration 1. The rest
+/// as in minvar_curve_solve().
+///
+/// Errors: as minvar_curve_solve().
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn minvar_curve_minima(
+    curve: *const minvar_curve,
+    options: *const minvar_options,
+    workspace: *mut f64,
+    workspace_len: usize,
+    observer: minvar_observer,
+    observer_context: *mut c_void,
+    elements: *mut minvar_element,
+    elements_len: usize,
+    reports: *mut minvar_report,
+    reports_len: usize,
+    count: *mut usize,
+    error: *mut minvar_error,
+) -> minvar_code {
+    // SAFETY: promised by the caller; the layouts of elements are the same as the kernel's.
+    unsafe {
+        answer::<CurveError>(error, || {
+            let curve = view(curve)?;
+            let options = options_of(options)?;
+            let workspace = array_mut(workspace, workspace_len, "workspace")?;
+            let elements = array_mut(elements.cast::<Element>(), elements_len, "elements")?;
+            let reports = array_mut(reports, reports_len, "reports")?;
+            let count = Output::new(count, "count")?;
+            let mut watch = Watch { observer, context: observer_context };
+            let found = curve::minima_as(
+                &curve, &options, workspace, elements, reports, report_of, ours, &mut watch,
+            )?;
+            count.put(found);
             Ok(())
         })
     }

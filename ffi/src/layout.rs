@@ -22,7 +22,7 @@ layout! {
     minvar_joint { continuity: 0, position: 8, tangent: 40, curvature: 104, guide: 168 } 192
     minvar_obstacle { from: 0, to: 24, clearance: 48, side: 56 } 64
     minvar_curve { joints: 0, joint_count: 8, closed: 16, reference: 24, reference_count: 32, reference_weight: 40, obstacles: 48, obstacle_count: 56 } 64
-    minvar_options { functional: 0, elements_per_span: 4, quadrature_points: 8, max_iterations: 12, dimension: 16, relative_decrease: 24, tension: 32, bending: 40, length: 48, tolerance: 56 } 64
+    minvar_options { functional: 0, elements_per_span: 4, quadrature_points: 8, max_iterations: 12, dimension: 16, continuation: 20, relative_decrease: 24, tension: 32, bending: 40, length: 48, tolerance: 56 } 64
     minvar_element { rows: 0 } 144
     minvar_record { value: 0, predicted: 8, actual: 16, gradient: 24, step: 32, shift: 40 } 48
     minvar_report { status: 0, planar: 4, elements: 8, iterations: 16, linearisations: 24, unknowns: 32, value: 40, fine_value: 48, length: 56, variation: 64, bending: 72, error: 80, gradient: 88, decrement: 96 } 104

@@ -288,7 +288,7 @@ static void curve_functions(void) {
     static const double decrease[4] = {-1e-300, 1.0, NAN, INFINITY};
     for (int i = 0; i < 4; i++) {
         options_data.relative_decrease = decrease[i];
-        REFUSED_CURVE(MINVAR_BAD_OPTION, 5, "relative_decrease");
+        REFUSED_CURVE(MINVAR_BAD_OPTION, 6, "relative_decrease");
     }
 
     /* Buffers one too short, and just long enough. */

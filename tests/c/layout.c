@@ -49,6 +49,7 @@ FIELD(minvar_options, elements_per_span, 4);
 FIELD(minvar_options, quadrature_points, 8);
 FIELD(minvar_options, max_iterations, 12);
 FIELD(minvar_options, dimension, 16);
+FIELD(minvar_options, continuation, 20);
 FIELD(minvar_options, relative_decrease, 24);
 FIELD(minvar_options, tension, 32);
 FIELD(minvar_options, bending, 40);
@@ -188,6 +189,7 @@ int main(void) {
     PRINT(quadrature_points);
     PRINT(max_iterations);
     PRINT(dimension);
+    PRINT(continuation);
     PRINT(relative_decrease);
     PRINT(tension);
     PRINT(bending);

@@ -3,7 +3,7 @@
 
 use minvar::curve::{
     Curve, CurveError, Element, Functional, Joint, Obstacle, OptionName, Options, Quantity, Reference,
-    Report, Side, elements_len, measure, solve, update, workspace_len,
+    Report, Side, elements_len, measure, minima, solve, update, workspace_len,
 };
 use minvar::solve::{Silent, Status};
 use minvar_tests::curves::{deviation, distance, solve_curve};
@@ -222,6 +222,25 @@ fn a_curvature_of_given_size_keeps_it_and_finds_its_direction() {
         if report.status == Status::Converged {
             assert!(best <= report.value * (1.0 + 1e-6), "{angle}: {best} {}", report.value);
         }
+    }
+}
+
+#[test]
+fn a_size_along_an_oblique_tangent_is_kept() {
+    // What rounding leaves across the tangent must not be taken for a direction.
+    for tangent in [[0.6, 0.8, 0.0], [1.0, 2.0, 0.0], [0.1, 0.3, 0.0], [0.3, 0.7, 0.2]] {
+        let length = libm::sqrt(tangent.iter().map(|x| x * x).sum());
+        let joints = [
+            Joint::at([0.0; 3])
+                .with_tangent(Quantity::fixed(tangent))
+                .with_curvature(Quantity::of_size(tangent.map(|x| 0.3 * (x / length)))),
+            Joint::at([2.0, 2.0, 0.0]),
+            Joint::at([4.0, 1.0, 0.0]),
+        ];
+        let (report, elements) = solve_curve(&joints, false, &Options::DEFAULT).expect("good data");
+        assert_eq!(report.status, Status::Converged, "{tangent:?}");
+        let found = measure::at(&elements, 0, 0.0).expect("a point").curvature;
+        close(found.iter().map(|x| x * x).sum::<f64>().sqrt(), 0.3, 1e-12, "size");
     }
 }
 
@@ -466,5 +485,86 @@ fn a_given_length_is_met_and_costs_what_the_truth_says() {
         close(report.length, 8.4, 1e-9, "length");
         close(report.variation, v, allowed, "V");
         close(report.bending, e, allowed, "E");
+    }
+}
+
+#[test]
+fn the_curves_with_and_without_a_loop_are_both_listed() {
+    use minvar_tests::appendix::figure;
+    use minvar_tests::compare::kernel_joints;
+    let truth = truth();
+    let figure = figure("4.9-1");
+    let joints = kernel_joints(&figure);
+    let curve = Curve::new(&joints, figure.closed);
+    let options = Options { elements_per_span: 2, ..Options::DEFAULT };
+    let len = elements_len(&curve, &options);
+    let mut workspace = vec![f64::NAN; workspace_len(&curve, &options).expect("good data")];
+    let (usual, _) = solved(&curve, &options);
+    for room in [1, 2, 8] {
+        let mut elements = vec![Element::ZERO; (room + 1) * len];
+        let mut reports = vec![usual; room];
+        let found = minima(&curve, &options, &mut workspace, &mut elements, &mut reports, &mut Silent)
+            .expect("good data");
+        assert!(found <= room && found >= room.min(2), "{found}");
+        assert!(reports[..found].windows(2).all(|pair| pair[0].value < pair[1].value), "the lowest first");
+        for (index, report) in reports[..found].iter().enumerate() {
+            let chain = &elements[index * len..(index + 1) * len];
+            close(measure::variation(chain), report.variation, 1e-9, "its own elements");
+        }
+        if room == 8 {
+            for name in ["loop", "no_loop"] {
+                let [v, _, l] = truth[&(name.to_owned(), "mvc".to_owned())];
+                let listed = reports[..found].iter().any(|report| {
+                    (report.variation - v).abs() < 1e-4 * v && (report.length - l).abs() < 1e-4 * l
+                });
+                assert!(listed, "{name}");
+            }
+        }
+    }
+    let error = minima(&curve, &options, &mut workspace, &mut [Element::ZERO; 3], &mut [usual], &mut Silent);
+    assert_eq!(error, Err(CurveError::ElementsTooShort { needed: 2 * len, given: 3 }));
+}
+
+#[test]
+fn a_continuation_under_tension_leads_to_the_short_curve() {
+    use minvar_tests::appendix::figure;
+    use minvar_tests::compare::kernel_joints;
+    let truth = truth();
+    // The start tangents of the figure with the loop.
+    let figure = figure("4.9-1");
+    let joints = kernel_joints(&figure);
+    let [looped, _, _] = truth[&("loop".to_owned(), "mvc".to_owned())];
+    let (usual, _) = solve_curve(&joints, false, &Options::DEFAULT).expect("good data");
+    close(usual.value, looped, 1e-2, "with the loop");
+    // Where there is one minimum, the way to it makes no difference.
+    for continuation in [1, 4, 8] {
+        let options = Options { continuation, ..Options::DEFAULT };
+        let (report, _) = solve_curve(&woodford(), false, &options).expect("good data");
+        assert_eq!(report.status, Status::Converged, "{continuation}");
+        close(report.value, 1.153720856, 2e-5, "Woodford");
+    }
+    let error = workspace_len(&Curve::open(&joints), &Options { continuation: 17, ..Options::DEFAULT });
+    assert_eq!(error, Err(CurveError::BadOption(OptionName::Continuation)));
+    // Data without a minimum have none on this way either.
+    let options = Options { continuation: 6, ..Options::DEFAULT };
+    for degrees in [120.0, 150.0, -150.0] {
+        let (report, _) = solve_curve(&s_curve(degrees), false, &options).expect("good data");
+        assert_ne!(report.status, Status::Converged, "{degrees}");
+    }
+}
+
+#[test]
+fn what_grows_without_limit_is_said_to_within_few_iterations() {
+    for degrees in [120.0, 150.0, 180.0] {
+        for sign in [1.0, -1.0] {
+            let (report, _) =
+                solve_curve(&s_curve(sign * degrees), false, &Options::DEFAULT).expect("good data");
+            assert_eq!(report.status, Status::Unbounded, "{degrees}");
+            assert!(report.iterations <= 100, "{degrees}: {}", report.iterations);
+            let options =
+                Options { functional: Functional::SI_MVC, elements_per_span: 4, ..Options::DEFAULT };
+            let (report, _) = solve_curve(&s_curve(sign * degrees), false, &options).expect("good data");
+            assert_eq!(report.status, Status::Converged, "{degrees}: the advice is good");
+        }
     }
 }

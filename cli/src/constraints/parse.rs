@@ -1,6 +1,7 @@
 //! From words to joints and a curve as they are written.
 
 use super::fault::{did_you_mean, quote};
+use super::position::SLIDING;
 use super::resolve::{Curve, Joint, Written};
 use super::words::{Kind, Place, Word, Words};
 use super::{Continuity, Fault, Given, NamedJoint};
@@ -51,7 +52,23 @@ struct Condition {
     /// Arriving and leaving.
     sides: [bool; 2],
     sided: bool,
-    value: Given,
+    value: Value,
+}
+
+/// The value of a condition.
+enum Value {
+    Given(Given),
+    /// A curvature's size without a direction.
+    Size(f64),
+}
+
+/// What has been read of a joint's conditions.
+#[derive(Default)]
+struct Seen {
+    /// Where each was given: of the curvature and the tangent, arriving and leaving.
+    places: [[Option<Place>; 2]; 2],
+    /// Curvatures of which only the size was given, arriving and leaving.
+    sizes: [Option<f64>; 2],
 }
 
 impl<'a> Parser<'a> {
@@ -111,17 +128,21 @@ impl<'a> Parser<'a> {
             line,
             column,
         };
-        let mut seen = [[None; 2]; 2];
+        let mut seen = Seen::default();
         loop {
             let word = self.words.next();
             match word.kind {
-                Kind::Close => return Ok(Joint { place: open.place.to(name.place), value: joint }),
+                Kind::Close => {
+                    self.turn_sizes(&mut joint, &seen)?;
+                    return Ok(Joint { place: open.place.to(name.place), value: joint });
+                }
                 Kind::End => return Err(self.unclosed(open, &what)),
                 Kind::Open => {}
                 Kind::Comma | Kind::Text => {
-                    return Err(
-                        self.expected(&format!("`(Fixed …`, `(Initial …` or the `)` of {what}"), word)
-                    );
+                    return Err(self.expected(
+                        &format!("`(Fixed …`, `(Initial …`, `(Size …` or the `)` of {what}"),
+                        word,
+                    ));
                 }
             }
             let condition = self.condition(open, word, &what)?;
@@ -140,49 +161,14 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// `[index] [Fixed | Initial] (x,y,z)`
-    fn position(&mut self, open: Word<'a>, what: &str) -> Parsed<Given> {
-        let mut word = self.words.next();
-        if word.kind == Kind::Text && word.text.bytes().all(|b| b.is_ascii_digit()) {
-            word = self.words.next();
-        }
-        let mut initial = false;
-        if word.kind == Kind::Text {
-            initial = match word.text.to_ascii_lowercase().as_str() {
-                "fixed" => false,
-                "initial" => true,
-                _ if looks_like_number(word.text) => {
-                    let message =
-                        format!("the index of {what} must be a whole number, not {}", quote(word.text));
-                    return Err(self
-                        .fault(word, message)
-                        .help("a position stands in parentheses: `(x,y,z)`"));
-                }
-                _ => {
-                    let fault = self.expected(&format!("the position of {what}"), word);
-                    return Err(match did_you_mean(word.text, ["Fixed", "Initial"]) {
-                        Some(help) => fault.help(help),
-                        None => fault,
-                    });
-                }
-            };
-            word = self.words.next();
-        }
-        match word.kind {
-            Kind::Close => return Err(self.fault(word, format!("{what} has no position"))),
-            Kind::End => return Err(self.unclosed(open, what)),
-            _ => {}
-        }
-        let (point, _) = self.point(open, word, what, "the position")?;
-        Ok(if initial { Given::Initial(point) } else { Given::Fixed(point) })
-    }
-
-    /// `Fixed | Initial  Tangent | Curvature  [Arriving | Leaving]  (x,y,z) )` after its parenthesis.
+    /// `Fixed | Initial | Size  Tangent | Curvature  [Arriving | Leaving]  (x,y,z) )` after its parenthesis. A size may be a
+    /// number.
     fn condition(&mut self, open: Word<'a>, inner: Word<'a>, what: &str) -> Parsed<Condition> {
         let status = self.words.next();
-        let initial = match status.text.to_ascii_lowercase().as_str() {
-            "fixed" => false,
-            "initial" => true,
+        let given: fn([f64; 3]) -> Given = match status.text.to_ascii_lowercase().as_str() {
+            "fixed" => Given::Fixed,
+            "initial" => Given::Initial,
+            "size" => Given::Size,
             "g0joint" | "g1joint" | "g2joint" | "g2curve" => {
                 let message = format!("a `)` is missing before this form: {what} is still open");
                 return Err(self.fault(inner, message).earlier(self.text, open.place, "it begins here"));
@@ -193,14 +179,17 @@ impl<'a> Parser<'a> {
                     Kind::Text => {
                         self.fault(status, format!("unknown keyword {} in {what}", quote(status.text)))
                     }
-                    _ => self.expected("`Fixed` or `Initial`", status),
+                    _ => self.expected("`Fixed`, `Initial` or `Size`", status),
                 };
-                return Err(match did_you_mean(status.text, ["Fixed", "Initial"]) {
+                return Err(match did_you_mean(status.text, ["Fixed", "Initial", "Size"]) {
+                    _ if looks_like_number(lower) || lower == "line" || lower == "plane" => {
+                        fault.help(format!("a joint that slides is written `{SLIDING}`"))
+                    }
                     _ if lower == "tangent" || lower == "curvature" => {
                         fault.help(format!("say which: `(Fixed {0} …` or `(Initial {0} …`", status.text))
                     }
                     Some(help) if status.kind == Kind::Text => fault.help(help),
-                    _ => fault.help("a condition is `(Fixed Tangent (x,y,z))`, or Initial, or Curvature"),
+                    _ => fault.help("a condition is `(Fixed Tangent (x,y,z))`, or Initial, or Curvature, or `(Size Curvature (x,y,z))`"),
                 });
             }
         };
@@ -222,10 +211,16 @@ impl<'a> Parser<'a> {
             }
         };
         let property_name = if is_tangent { "the tangent" } else { "the curvature" };
+        let size = status.text.eq_ignore_ascii_case("size");
+        if size && is_tangent {
+            let fault = self.fault(status, format!("the tangent of {what} cannot be given by its size"));
+            return Err(fault.help("a tangent is a direction: only a curvature has a size"));
+        }
 
         let mut word = self.words.next();
         let mut sides = [true, true];
-        let sided = word.kind == Kind::Text;
+        let is_size = |word: Word<'_>| size && word.kind == Kind::Text && looks_like_number(word.text);
+        let sided = word.kind == Kind::Text && !is_size(word);
         if sided {
             sides = match word.text.to_ascii_lowercase().as_str() {
                 "arriving" => [true, false],
@@ -234,6 +229,10 @@ impl<'a> Parser<'a> {
                     let fault = self.expected(&format!("the value of {property_name} of {what}"), word);
                     return Err(match did_you_mean(word.text, ["Arriving", "Leaving"]) {
                         Some(help) => fault.help(help),
+                        None if size => fault.help("a size is `(x,y,z)`, as long as the curvature, or a number"),
+                        None if !is_tangent && looks_like_number(word.text) => fault.help(
+                            "a value stands in parentheses: `(x,y,z)`; a size alone is `(Size Curvature 0.27)`",
+                        ),
                         None => fault.help("a value stands in parentheses: `(x,y,z)`"),
                     });
                 }
@@ -243,23 +242,29 @@ impl<'a> Parser<'a> {
         if word.kind == Kind::Close {
             return Err(self.fault(word, format!("{property_name} of {what} has no value")));
         }
-        let (point, place) = self.point(open, word, what, property_name)?;
-        if is_tangent && point == [0.0; 3] {
-            let message = format!("the tangent of {what} has no direction: all coordinates are zero");
-            return Err(Fault::error(self.text, place, message));
-        }
+        let value = if is_size(word) {
+            let size = self.number(word)?;
+            if size < 0.0 {
+                let fault = self.fault(word, format!("the size of the curvature of {what} is negative"));
+                return Err(
+                    fault.help("to say which side, give a vector to the centre: `(Size Curvature (x,y,z))`")
+                );
+            }
+            Value::Size(size)
+        } else {
+            let (point, place) = self.point(open, word, what, property_name)?;
+            if is_tangent && point == [0.0; 3] {
+                let message = format!("the tangent of {what} has no direction: all coordinates are zero");
+                return Err(Fault::error(self.text, place, message));
+            }
+            Value::Given(given(point))
+        };
         self.close(open, what)?;
-        let value = if initial { Given::Initial(point) } else { Given::Fixed(point) };
         Ok(Condition { place: inner.place.to(property.place), is_tangent, sides, sided, value })
     }
 
     /// Writes a condition into its joint, once a side.
-    fn apply(
-        &self,
-        condition: Condition,
-        joint: &mut NamedJoint,
-        seen: &mut [[Option<Place>; 2]; 2],
-    ) -> Parsed<()> {
+    fn apply(&self, condition: Condition, joint: &mut NamedJoint, seen: &mut Seen) -> Parsed<()> {
         let Condition { place, is_tangent, sides, sided, value } = condition;
         let property = if is_tangent { "tangent" } else { "curvature" };
         let split = match joint.continuity {
@@ -277,10 +282,10 @@ impl<'a> Parser<'a> {
             return Err(Fault::error(self.text, place, message).help(help));
         }
         let given = if is_tangent { &mut joint.tangent } else { &mut joint.curvature };
-        let seen = &mut seen[usize::from(is_tangent)];
+        let places = &mut seen.places[usize::from(is_tangent)];
         for side in 0..2 {
             if sides[side] {
-                if let Some(first) = seen[side] {
+                if let Some(first) = places[side] {
                     let message = format!("the {property} of joint {} is given twice", quote(&joint.name));
                     return Err(Fault::error(self.text, place, message).earlier(
                         self.text,
@@ -288,9 +293,32 @@ impl<'a> Parser<'a> {
                         "given here",
                     ));
                 }
-                seen[side] = Some(place);
-                given[side] = value;
+                places[side] = Some(place);
+                match value {
+                    Value::Given(value) => given[side] = value,
+                    Value::Size(size) => seen.sizes[side] = Some(size),
+                }
             }
+        }
+        Ok(())
+    }
+
+    /// Curvatures of which only the size is given: along the tangent, which says nothing of their direction.
+    fn turn_sizes(&self, joint: &mut NamedJoint, seen: &Seen) -> Parsed<()> {
+        for side in 0..2 {
+            let (Some(size), Some(place)) = (seen.sizes[side], seen.places[0][side]) else { continue };
+            let (Given::Fixed(tangent) | Given::Initial(tangent)) = joint.tangent[side] else {
+                let name = quote(&joint.name);
+                let message =
+                    format!("the curvature of joint {name} has a size but the joint has no tangent");
+                return Err(Fault::error(self.text, place, message)
+                    .help("give a tangent, fixed or initial, or a vector: `(Size Curvature (x,y,z))`"));
+            };
+            // Any length is a direction: no square may overflow.
+            let most = tangent.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            let tangent = tangent.map(|x| x / most);
+            let length = tangent.iter().map(|x| x * x).sum::<f64>().sqrt();
+            joint.curvature[side] = Given::Size(tangent.map(|x| size * (x / length)));
         }
         Ok(())
     }
@@ -366,6 +394,6 @@ fn is_any(word: &str, keywords: &[&str]) -> bool {
     keywords.iter().any(|keyword| word.eq_ignore_ascii_case(keyword))
 }
 
-fn looks_like_number(word: &str) -> bool {
+pub(super) fn looks_like_number(word: &str) -> bool {
     word.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
 }

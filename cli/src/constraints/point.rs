@@ -54,7 +54,7 @@ impl<'a> Parser<'a> {
         Ok((point, place))
     }
 
-    fn number(&self, word: Word<'_>) -> Parsed<f64> {
+    pub(super) fn number(&self, word: Word<'_>) -> Parsed<f64> {
         match word.text.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
             Ok(_) => Err(self.fault(word, format!("the number {} is not finite", quote(word.text)))),

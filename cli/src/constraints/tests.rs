@@ -1,7 +1,7 @@
 //! The reader against the thesis's listings and against everything a hand may get wrong.
 #![expect(clippy::approx_constant, reason = "the listings round π")]
 
-use super::Given::{Fixed, Free, Initial};
+use super::Given::{Fixed, Free, Initial, OnLine, OnPlane, Size};
 use super::{Continuity, Fault, Reading, Specification, read};
 use std::time::{Duration, Instant};
 
@@ -81,6 +81,122 @@ fn every_listing_of_appendix_a_is_read() {
     assert_eq!(figure("figure_eight").joints[3].position, Initial([0.0; 3]));
     assert_eq!(figure("peters_helix").joints[11].position, Fixed([-3.14159, -3.14159, -7.85398]));
     assert_eq!(figure("coving").joints[0].curvature, [Fixed([0.27, 0.0, 0.0]); 2]);
+}
+
+#[test]
+fn a_joint_may_slide_on_a_line_or_in_a_plane() {
+    let got = curve(
+        "(G2Joint a Line (0,1,2) (3,4,5) (Fixed Tangent (1,0,0)))
+         (g1joint b 7 PLANE(1,0,0)(0,0,-2))
+         (G2Joint Line (2,0,0))
+         (G2Curve c Open (a,b,Line))",
+    );
+    assert_eq!(got.joints[0].position, OnLine([0.0, 1.0, 2.0], [3.0, 4.0, 5.0]));
+    assert_eq!(got.joints[0].tangent, [Fixed([1.0, 0.0, 0.0]); 2]);
+    assert_eq!(got.joints[1].position, OnPlane([1.0, 0.0, 0.0], [0.0, 0.0, -2.0]));
+    assert_eq!((got.joints[2].name.as_str(), got.joints[2].position), ("Line", Fixed([2.0, 0.0, 0.0])));
+    assert!(!got.joints[0].position.is_fixed() && !got.joints[1].position.is_fixed());
+    assert_eq!(figure("coving_slide").joints[0].position, OnLine([0.5, -12.0, 0.0], [0.0, 1.0, 0.0]));
+    assert_eq!(figure("rail_slide").joints[1].position, OnPlane([1.0, 0.5, 0.3], [1.0, 0.2, -0.1]));
+}
+
+#[test]
+fn a_slide_that_is_wrong_is_named() {
+    check_joint(
+        "(G2Joint a Line (0,0,0))",
+        24,
+        "the line of joint `a` has no direction: a second point is missing",
+    );
+    check_joint(
+        "(G2Joint a Plane (0,0,0) (Fixed Tangent (1,0,0)))",
+        26,
+        "the plane of joint `a` has no direction: a second point",
+    );
+    check_joint(
+        "(G2Joint a Line (0,0,0) (0,0,0))",
+        25,
+        "the direction of the line of joint `a` has no direction",
+    );
+    check_joint(
+        "(G2Joint a Plane (0,0,0) (0,-0,0))",
+        26,
+        "the normal of the plane of joint `a` has no direction",
+    );
+    check_joint("(G2Joint a Line (0,0,0) (nan,0,0))", 26, "`nan` is not finite");
+    check_joint("(G2Joint a Line (0,0,0) (0,inf,0))", 28, "`inf` is not finite");
+    check_joint(
+        "(G2Joint a Line (0,0,0) (1,0))",
+        25,
+        "the direction of the line of joint `a` has 2 coordinates",
+    );
+    check_joint("(G2Joint a Line (0,0,0) (1,x,0))", 28, "`x` is not a number");
+    check_joint("(G2Joint a Line (0,0,0) 1)", 25, "expected the direction of the line `(x,y,z)`");
+    check_joint("(G2Joint a Line)", 16, "joint `a` has no position");
+    check_joint("(G2Joint a Line Plane (0,0,0) (0,0,1))", 17, "expected the position `(x,y,z)`");
+    check_joint("(G2Joint a Lyne (0,0,0) (0,0,1))", 12, "expected the position of joint `a`, found `Lyne`");
+    assert_eq!(fault("(G2Joint a Lyne (0,0,0))").help.as_deref(), Some("did you mean `Line`?"));
+    let lost = fault("(G2Joint a (0,0,0) (0,0,1))");
+    assert!(
+        lost.help.as_deref().is_some_and(|help| help.contains("Line (x,y,z) (dx,dy,dz)")),
+        "{}",
+        show(&lost)
+    );
+    check("(G2Joint a Line (0,0,0) (0,0", 1, 25, "the file ends inside the direction of the line");
+    check("(G2Joint a Line (0,0,0)", 1, 1, "the file ends inside joint `a`");
+    check("(G2Joint a Line", 1, 1, "the file ends inside joint `a`");
+}
+
+#[test]
+fn of_a_curvature_the_size_alone_may_be_kept() {
+    let got = curve(
+        "(G2Joint a (0,0,0) (size curvature (0,0.3,0)))
+         (G2Joint b (1,0,0) (SIZE CURVATURE 0.25) (Initial Tangent (0,0,4e200)))
+         (G1Joint c (2,0,0) (Fixed Tangent (0,3,4)) (Size Curvature Leaving .5) (Fixed Curvature Arriving (1,0,0)))
+         (G0Joint d (3,0,0) (Fixed Tangent Arriving (1,0,0)) (Fixed Tangent Leaving (0,1,0)) (Size Curvature 2))
+         (G2Curve c Open (a,b,c,d))",
+    );
+    assert_eq!(got.joints[0].curvature, [Size([0.0, 0.3, 0.0]); 2]);
+    assert_eq!(
+        got.joints[1].curvature,
+        [Size([0.0, 0.0, 0.25]); 2],
+        "along the tangent, wherever that stands"
+    );
+    assert_eq!(got.joints[2].curvature, [Fixed([1.0, 0.0, 0.0]), Size([0.0, 0.3, 0.4])]);
+    assert_eq!(got.joints[3].curvature, [Size([2.0, 0.0, 0.0]), Size([0.0, 2.0, 0.0])]);
+    assert_eq!(figure("size_curvature").joints[0].curvature, [Size([0.0, 0.0, 0.3]); 2]);
+}
+
+#[test]
+fn a_size_that_is_wrong_is_named() {
+    check_joint("(G2Joint a (0,0,0) (Size Curvature 0.3))", 20, "has a size but the joint has no tangent");
+    check_joint(
+        "(G0Joint a (0,0,0) (Size Curvature 0.3) (Fixed Tangent Leaving (1,0,0)))",
+        20,
+        "has a size but the joint has no tangent",
+    );
+    check_joint(
+        "(G2Joint a (0,0,0) (Size Curvature -0.3))",
+        36,
+        "the size of the curvature of joint `a` is negative",
+    );
+    check_joint("(G2Joint a (0,0,0) (Size Curvature 1e999))", 36, "`1e999` is not finite");
+    check_joint("(G2Joint a (0,0,0) (Size Curvature +nan))", 36, "`+nan` is not finite");
+    check_joint("(G2Joint a (0,0,0) (Size Curvature NaN))", 36, "expected the value of the curvature");
+    check_joint("(G2Joint a (0,0,0) (Size Curvature 0.3.1))", 36, "`0.3.1` is not a number");
+    check_joint("(G2Joint a (0,0,0) (Size Curvature))", 35, "the curvature of joint `a` has no value");
+    check_joint("(G2Joint a (0,0,0) (Size Curvature 0.3 0.4))", 40, "expected `)` after the value");
+    check_joint("(G2Joint a (0,0,0) (Size Tangent (1,0,0)))", 21, "cannot be given by its size");
+    check_joint("(G2Joint a (0,0,0) (Size 0.3))", 26, "unknown keyword `0.3`");
+    check_joint("(G2Joint a (0,0,0) (Size Curvature Leaving 0.3))", 20, "has one curvature");
+    check_joint("(G2Joint a (0,0,0) (Fixed Curvature (0,1,0)) (Size Curvature (0,1,0)))", 46, "given twice");
+    let bare = fault("(G2Joint a (0,0,0) (Fixed Curvature 0.3))");
+    assert_eq!((bare.column, bare.line), (37, 1), "{}", show(&bare));
+    assert!(
+        bare.help.as_deref().is_some_and(|help| help.contains("`(Size Curvature 0.27)`")),
+        "{}",
+        show(&bare)
+    );
+    assert_eq!(fault("(G2Joint a (0,0,0) (Sise Curvature 1))").help.as_deref(), Some("did you mean `Size`?"));
 }
 
 #[test]

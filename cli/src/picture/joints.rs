@@ -2,11 +2,42 @@
 
 use super::page::{Anchor, Page, Spot, width};
 use super::shape::Panel;
-use super::{DOT, Mark, Picture, RING};
-use crate::trace::{Sample, Trace, Vector, add};
+use super::{DOT, Mark, Picture, RING, Slide};
+use crate::trace::{Sample, Trace, Vector, add, cross, norm, scale};
 
 /// More joints than this have no names.
 const MOST_NAMES: usize = 60;
+
+/// So far the line on which a joint slides is drawn to either side.
+const WAY: f64 = 44.0;
+
+/// The unit vectors along which a joint may slide; in a planar curve's plane those that lie in it.
+fn directions(slide: &Slide, plane: Option<Vector>) -> Vec<Vector> {
+    let unit = |v: Vector| {
+        // Of any size but zero: no square may overflow.
+        let most = v.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let v = scale(1.0 / most, v);
+        scale(1.0 / norm(v), v)
+    };
+    match slide {
+        Slide::Line(direction) => vec![unit(*direction)],
+        Slide::Plane(normal) => {
+            let normal = unit(*normal);
+            if let Some(plane) = plane {
+                let along = cross(plane, normal);
+                if norm(along) > 1e-9 {
+                    return vec![unit(along)];
+                }
+            }
+            let least =
+                (0..3).fold(0, |least, d| if normal[d].abs() < normal[least].abs() { d } else { least });
+            let mut axis = [0.0; 3];
+            axis[least] = 1.0;
+            let first = unit(cross(normal, axis));
+            vec![first, cross(normal, first)]
+        }
+    }
+}
 
 /// Markers and names of the joints.
 pub(super) fn draw(page: &mut Page, picture: &Picture<'_>, trace: &Trace, panel: &Panel, tips: &[Vector]) {
@@ -23,6 +54,24 @@ pub(super) fn draw(page: &mut Page, picture: &Picture<'_>, trace: &Trace, panel:
     };
     let shown = |mark: &Mark| sides(mark).into_iter().flatten().next().map(|sample| panel.spot(sample.point));
 
+    let paths: Vec<[Spot; 2]> = picture
+        .joints
+        .iter()
+        .filter_map(|mark| Some((sides(mark).into_iter().flatten().next()?.point, mark.slide.as_ref()?)))
+        .flat_map(|(point, slide)| {
+            directions(slide, trace.normal)
+                .into_iter()
+                .map(move |along| [-WAY, WAY].map(|way| panel.spot(add(point, way / panel.zoom, along))))
+        })
+        .collect();
+    if !paths.is_empty() {
+        page.clip("clip-shape", panel.corner, panel.size);
+        page.open("slides", Some("clip-shape"));
+        for [from, to] in &paths {
+            page.line("slide", *from, *to);
+        }
+        page.close();
+    }
     for mark in picture.joints {
         let given = sides(mark);
         for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
@@ -54,6 +103,9 @@ pub(super) fn draw(page: &mut Page, picture: &Picture<'_>, trace: &Trace, panel:
     for (tip, sample) in tips.iter().zip(&trace.samples) {
         let tooth = add(*tip, -1.0, sample.point);
         ink.extend([0.1, 0.3, 0.5, 1.0].map(|part| panel.spot(add(sample.point, part, tooth))));
+    }
+    for [from, to] in &paths {
+        ink.extend((0..=44).map(|k| [0, 1].map(|d| from[d] + f64::from(k) / 44.0 * (to[d] - from[d]))));
     }
     let dots: Vec<Spot> = picture.joints.iter().filter_map(shown).collect();
     for mark in picture.joints {

@@ -1,7 +1,7 @@
 //! Pictures, read back as XML and measured.
 
 use super::page::width;
-use super::{Mark, Picture, svg};
+use super::{Mark, Picture, Slide, svg};
 use crate::trace::shapes::{circle, polynomial, quarter};
 use crate::trace::{Vector, add};
 use minvar::curve::Element;
@@ -12,6 +12,7 @@ fn marks(count: usize) -> Vec<Mark> {
         name: format!("p{element}"),
         element,
         fixed: element % 3 != 1,
+        slide: None,
         tangent: [element.is_multiple_of(2); 2],
         curvature: element.is_multiple_of(5),
     };
@@ -98,8 +99,14 @@ fn every_picture_is_xml_of_finite_numbers() {
 
 #[test]
 fn a_title_is_escaped() {
-    let joints =
-        [Mark { name: "<&\u{1}".into(), element: 0, fixed: true, tangent: [false; 2], curvature: false }];
+    let joints = [Mark {
+        name: "<&\u{1}".into(),
+        element: 0,
+        fixed: true,
+        slide: None,
+        tangent: [false; 2],
+        curvature: false,
+    }];
     let elements = [quarter(1.0)];
     let picture = Picture {
         title: "a<b & \"c\"",
@@ -211,6 +218,45 @@ fn joints_show_what_is_fixed() {
     assert_eq!((count("free"), count("tangent"), count("ring")), (1 + 1, 4 + 1, 1 + 1));
     // The closed curve's first joint is marked at both ends of the plot.
     assert_eq!(count("station"), 5);
+}
+
+/// The classed lines from the group of slides, as vectors, of a quarter circle or a screw whose first joint slides.
+fn slides(elements: &[Element], slide: Slide) -> Vec<[f64; 2]> {
+    let mut joints = marks(elements.len() + 1);
+    joints[0].slide = Some(slide);
+    joints[0].fixed = false;
+    let text =
+        svg(&Picture { title: "t", figures: &[], elements, closed: false, joints: &joints, obstacles: &[] });
+    let document = Document::parse(&text).expect("XML");
+    assert!(text.contains(">sliding point<") && !text.contains("NaN"));
+    let group = of_class(&document, "slides")[0];
+    let clip = of_class(&document, "frame")[0];
+    assert!(
+        group.attribute("clip-path") == Some("url(#clip-shape)")
+            && clip.has_tag_name("rect") == (elements.len() == 1)
+    );
+    let lines = group.children().filter(Node::is_element);
+    lines
+        .map(|line| [number(line, "x2") - number(line, "x1"), number(line, "y2") - number(line, "y1")])
+        .collect()
+}
+
+#[test]
+fn a_sliding_joint_shows_its_way() {
+    let near = |a: &[f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() < 0.03 && (a[1] - b[1]).abs() < 0.03;
+    let quarter = [quarter(1.0)];
+    for size in [1e-200, 1.0, 1e200] {
+        let line = slides(&quarter, Slide::Line([0.6 * size, 0.8 * size, 0.0]));
+        assert!(line.len() == 1 && near(&line[0], [52.8, -70.4]), "{line:?}");
+        let plane = slides(&quarter, Slide::Plane([0.0, size, 0.0]));
+        assert!(plane.len() == 1 && near(&plane[0].map(f64::abs), [88.0, 0.0]), "{plane:?}");
+    }
+    // A plane that holds the curve, and one in space: two ways.
+    assert_eq!(slides(&quarter, Slide::Plane([0.0, 0.0, 2.0])).len(), 2);
+    assert_eq!(slides(&screw(9), Slide::Plane([1.0, 2.0, 3.0])).len(), 2);
+    assert_eq!(slides(&screw(9), Slide::Line([1.0, 2.0, 3.0])).len(), 1);
+    let still = draw(&quarter, false, &[]);
+    assert!(!still.contains("class=\"slide") && !still.contains("sliding"));
 }
 
 #[test]

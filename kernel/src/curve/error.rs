@@ -40,6 +40,8 @@ pub enum OptionName {
     QuadraturePoints,
     /// `dimension`
     Dimension,
+    /// `continuation`
+    Continuation,
     /// `relative_decrease`
     RelativeDecrease,
     /// `tension`
@@ -66,6 +68,7 @@ impl OptionName {
             Self::Dimension => {
                 "dimension: must be 0 (found from the data), 2 (the data must lie in a plane) or 3"
             }
+            Self::Continuation => "continuation: must be from 0 to 16 stages",
             Self::RelativeDecrease => "relative_decrease: must be a number from 0 to below 1",
             Self::Tension => "tension: must be a number from 0 up, and 0 with a scale-invariant functional",
             Self::Bending => "bending: must be a number from 0 up, and 0 with a scale-invariant functional",

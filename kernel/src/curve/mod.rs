@@ -63,4 +63,4 @@ pub use joint::{Continuity, Curve, Given, Joint, Quantity, Reference};
 pub use measure::{CurvePoint, MeasureError};
 pub use obstacle::{Obstacle, Side};
 pub use options::Options;
-pub use solve::{Report, elements_len, solve, update, workspace_len};
+pub use solve::{Report, elements_len, minima, minima_as, solve, update, workspace_len};

@@ -58,28 +58,39 @@ fn task<const D: usize>(model: &Model<'_, D>, length: Option<f64>) -> (Weigh, La
     (weigh, law)
 }
 
+/// What became of start values.
+#[derive(Clone, Copy)]
+pub(super) struct Improved {
+    /// The tension that meets a given length; 0 without one.
+    pub(super) tension: f64,
+    /// Whether the curve grew on and on: it may have no minimum.
+    pub(super) grows: bool,
+}
+
 /// Improves the start values of a planar curve with one element a span whose joints all stand fixed: directions and
-/// curvatures at the joints, and the speeds. Returns the tension that meets a given length, 0 without one; nothing, and the
-/// state untouched, where it does not apply or does not settle.
+/// curvatures at the joints, and the speeds. Returns nothing, and leaves the state untouched, where it does not apply or does
+/// not settle.
 ///
 /// `memory` holds [`memory_len`] numbers.
 pub(super) fn improve<const D: usize>(
     model: &Model<'_, D>,
     length: Option<f64>,
+    bent: Option<usize>,
     state: &mut [f64],
     memory: &mut [f64],
     watch: &mut chain::Watch<'_>,
-) -> Option<f64>
+) -> Option<Improved>
 where
     Shape<D>: Density<D>,
 {
     if !applies(model) {
         return None;
     }
-    let mut chain = Chain::of(&COARSE, model, state, memory)?;
+    let mut chain = Chain::of(&COARSE, model, state, bent, memory)?;
     let (mut weigh, law) = task(model, length);
     // A curve that grows may have no minimum: what follows goes on from here, and finds out.
-    if matches!(chain.settle(&mut weigh, law, &ROUGH, watch), Ended::Failed | Ended::Stopped) {
+    let ended = chain.settle(&mut weigh, law, &ROUGH, watch);
+    if matches!(ended, Ended::Failed | Ended::Stopped) {
         return None;
     }
     for index in 0..model.element_count() {
@@ -101,5 +112,6 @@ where
             model.set_end(index, end, value, state);
         }
     }
-    Some(if length.is_some() { weigh.length } else { 0.0 })
+    let tension = if length.is_some() { weigh.length } else { 0.0 };
+    Some(Improved { tension, grows: ended == Ended::Grown })
 }

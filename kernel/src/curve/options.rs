@@ -30,6 +30,10 @@ pub struct Options {
     pub max_iterations: u32,
     /// 2 for a planar curve, 3 for a space curve, 0 to find out: planar where all data lie in a plane. Default 0.
     pub dimension: u32,
+    /// Stages of a continuation that starts under tension (thesis 4.10): each solves with a tenth of the tension of the one
+    /// before, the first with one that outweighs the functional; the last solution is where the search without it
+    /// starts. It leads to the minimum of shortest length where start values alone lead elsewhere. At most 16. Default 0.
+    pub continuation: u32,
     /// The curve has converged when a Newton step promises to lower the functional by less than this fraction, or when
     /// 20 iterations together lowered it by less than a thousand times that; up to two more steps polish it. 0 asks for
     /// as much as the arithmetic gives. Default 1e-12.
@@ -48,6 +52,7 @@ impl Options {
         quadrature_points: 0,
         max_iterations: 500,
         dimension: 0,
+        continuation: 0,
         relative_decrease: 1e-12,
     };
 
@@ -67,6 +72,9 @@ impl Options {
         }
         if !(self.quadrature_points == 0 || (12..=32).contains(&self.quadrature_points)) {
             return bad(OptionName::QuadraturePoints);
+        }
+        if self.continuation > 16 {
+            return bad(OptionName::Continuation);
         }
         if !matches!(self.dimension, 0 | 2 | 3) {
             return bad(OptionName::Dimension);

@@ -40,6 +40,7 @@ pub(super) struct Passes<'a> {
     pub(super) multiplier: f64,
     /// Whether the observer asked to stop.
     cancelled: bool,
+    hurries: bool,
 }
 
 impl<'a> Passes<'a> {
@@ -60,6 +61,7 @@ impl<'a> Passes<'a> {
             length,
             multiplier: 0.0,
             cancelled: false,
+            hurries: false,
         }
     }
 
@@ -73,6 +75,17 @@ impl<'a> Passes<'a> {
         self.iterations += 1;
         self.cancelled = control == Control::Cancel;
         !self.cancelled && self.iterations < self.most
+    }
+
+    /// Leaves only so many iterations.
+    pub(super) fn hurry(&mut self, iterations: usize) {
+        self.hurries = true;
+        self.most = self.most.min(self.iterations + iterations);
+    }
+
+    /// Whether only few iterations were left.
+    pub(super) fn hurries(&self) -> bool {
+        self.hurries
     }
 
     /// Two passes. First the shape, with a parametrisation that is kept even: only the shape decides how far a step goes

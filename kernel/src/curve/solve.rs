@@ -114,7 +114,7 @@ pub fn solve(
     records: &mut [Record],
     observer: &mut dyn Observer,
 ) -> Result<Report, CurveError> {
-    begin(curve, options, workspace, elements, records, observer, false)
+    begin(curve, options, workspace, elements, records, observer, Begin::Data(0))
 }
 
 /// Computes a curve anew from its last solution: a *warm start* for data that changed a little, as when a joint is
@@ -135,8 +135,133 @@ pub fn update(
     records: &mut [Record],
     observer: &mut dyn Observer,
 ) -> Result<Report, CurveError> {
-    begin(curve, &Options { tolerance: 0.0, ..*options }, workspace, elements, records, observer, true)
+    begin(
+        curve,
+        &Options { tolerance: 0.0, ..*options },
+        workspace,
+        elements,
+        records,
+        observer,
+        Begin::Elements,
+    )
 }
+
+/// What a search starts from.
+#[derive(Clone, Copy, PartialEq)]
+enum Begin {
+    /// The data, by one of [`starts`] rules.
+    Data(usize),
+    /// The elements.
+    Elements,
+}
+
+/// How many starts a curve's data offer: the usual one, one with each joint's start tangent turned round, one with each
+/// span bent the other way or further.
+const fn starts(curve: &Curve<'_>) -> usize {
+    1 + curve.joints.len() + curve.spans()
+}
+
+impl Begin {
+    /// The joint whose start tangent is turned round.
+    fn turned(self, curve: &Curve<'_>) -> Option<usize> {
+        match self {
+            Self::Data(start) if start <= curve.joints.len() => start.checked_sub(1),
+            _ => None,
+        }
+    }
+
+    /// The span that is bent another way.
+    fn bent(self, curve: &Curve<'_>) -> Option<usize> {
+        match self {
+            Self::Data(start) => start.checked_sub(1 + curve.joints.len()),
+            Self::Elements => None,
+        }
+    }
+}
+
+/// Looks for several minima of one curve: from the usual start values, from each start tangent turned round, and from each
+/// span bent the other way or further (thesis 4.10: curves with and without a loop). The list is what these starts lead
+/// to; it need not be complete.
+///
+/// `reports` receives a report a minimum, the lowest first, as many as it has room for; `elements` holds
+/// `(reports.len() + 1) ·` [`elements_len`] elements, of which the first [`elements_len`] receive the first minimum's, and so on; the
+/// last are scratch. The observer sees every solve begin with iteration 1. Returns the number of minima.
+///
+/// # Errors
+/// As [`solve()`].
+pub fn minima(
+    curve: &Curve<'_>,
+    options: &Options,
+    workspace: &mut [f64],
+    elements: &mut [Element],
+    reports: &mut [Report],
+    observer: &mut dyn Observer,
+) -> Result<usize, CurveError> {
+    minima_as(curve, options, workspace, elements, reports, |report| *report, |report| *report, observer)
+}
+
+/// [`minima`] into reports of another form, which can be made of and read as ours.
+///
+/// # Errors
+/// As [`minima`].
+#[doc(hidden)]
+#[expect(clippy::too_many_arguments, reason = "the caller's, and two conversions")]
+pub fn minima_as<R: Copy>(
+    curve: &Curve<'_>,
+    options: &Options,
+    workspace: &mut [f64],
+    elements: &mut [Element],
+    reports: &mut [R],
+    make: impl Fn(&Report) -> R,
+    read: impl Fn(&R) -> Report,
+    observer: &mut dyn Observer,
+) -> Result<usize, CurveError> {
+    let len = elements_len(curve, options);
+    let (needed, given) = (len.saturating_mul(reports.len() + 1), elements.len());
+    if given < needed {
+        return Err(CurveError::ElementsTooShort { needed, given });
+    }
+    let mut found = 0;
+    for start in 0..starts(curve) {
+        let (kept, rest) = elements.split_at_mut(reports.len() * len);
+        let scratch = &mut rest[..len];
+        let report = begin(curve, options, workspace, scratch, &mut [], observer, Begin::Data(start))?;
+        if report.status == Status::Cancelled {
+            break;
+        }
+        if report.status != Status::Converged {
+            continue;
+        }
+        let same = |other: &R| {
+            let other = read(other);
+            // Circles have no value: what is nothing beside that of bending once around is the same nothing.
+            let size = other.bending * other.length;
+            let nothing = NOTHING * size * functional_scale(options, other.length);
+            (report.value - other.value).abs() <= SAME_VALUE * (report.value + other.value) + nothing
+                && (report.length - other.length).abs() <= SAME_LENGTH * report.length
+        };
+        if reports[..found].iter().any(same) {
+            continue;
+        }
+        let lower = |other: &R| report.value < read(other).value;
+        let place = reports[..found].iter().position(lower).unwrap_or(found);
+        if place == reports.len() {
+            continue;
+        }
+        let last = found.min(reports.len() - 1);
+        reports.copy_within(place..last, place + 1);
+        kept.copy_within(place * len..last * len, (place + 1) * len);
+        reports[place] = make(&report);
+        kept[place * len..(place + 1) * len].copy_from_slice(scratch);
+        found = last + 1;
+    }
+    Ok(found)
+}
+
+/// Minima whose values and lengths differ by less than these fractions are the same: one element a span has several for one
+/// shape.
+const SAME_VALUE: f64 = 1e-4;
+const SAME_LENGTH: f64 = 1e-3;
 
 fn begin(
     curve: &Curve<'_>,
@@ -145,13 +270,13 @@ fn begin(
     elements: &mut [Element],
     records: &mut [Record],
     observer: &mut dyn Observer,
-    warm: bool,
+    from: Begin,
 ) -> Result<Report, CurveError> {
     let unit = look_over(curve, options)?;
     match Place::of(curve, unit, options.dimension)? {
-        Place::Plane(place) => run(curve, options, &place, workspace, elements, records, observer, warm),
+        Place::Plane(place) => run(curve, options, &place, workspace, elements, records, observer, from),
         Place::Space(_) if !curve.obstacles.is_empty() => Err(CurveError::ObstaclesNotPossible),
-        Place::Space(place) => run(curve, options, &place, workspace, elements, records, observer, warm),
+        Place::Space(place) => run(curve, options, &place, workspace, elements, records, observer, from),
     }
 }
 
@@ -259,7 +384,7 @@ fn run<const D: usize>(
     elements: &mut [Element],
     records: &mut [Record],
     observer: &mut dyn Observer,
-    warm: bool,
+    from: Begin,
 ) -> Result<Report, CurveError>
 where
     Shape<D>: Density<D>,
@@ -280,6 +405,7 @@ where
     let mut passes = Passes::new(observer, records, scale, options.max_iterations as usize, length);
     let decrease = options.relative_decrease;
 
+    let (begin, warm) = (from, from == Begin::Elements);
     let from = if warm { Some(&*elements) } else { curve.reference.map(|reference| reference.elements) };
     if let Some(from) = from {
         if warm && !curve.obstacles.is_empty() {
@@ -289,10 +415,10 @@ where
         model.natural_cost = adopt(&model, place, from, state);
         model.start_length = model.rough_length(state);
         if warm {
-            let tension = natural::improve(&model, length, state, work, &mut |sums, step| {
+            let improved = natural::improve(&model, length, None, state, work, &mut |sums, step| {
                 passes.note(model.value_of(sums), step)
             });
-            passes.multiplier = tension.unwrap_or(0.0);
+            passes.multiplier = improved.map_or(0.0, |improved| improved.tension);
         }
         if let Some(reference) = &curve.reference {
             model.gauge = reference.weight * model.natural_cost / count as f64;
@@ -308,22 +434,48 @@ where
     // One element a span first: its solution, cut into parts, is within some millionths of what more elements reach.
     let mut coarse = Model { division: Division::Even(1), ..model };
     let coarse_state = &mut state[..coarse.state_len()];
-    coarse.natural_cost = Start { model: &coarse, place, parts: 1 }.fill(coarse_state)?;
-    let tension = natural::improve(&coarse, length, coarse_state, work, &mut |sums, step| {
-        passes.note(coarse.value_of(sums), step)
-    });
-    passes.multiplier = tension.unwrap_or(0.0);
+    coarse.natural_cost =
+        Start { model: &coarse, place, parts: 1, turned: begin.turned(curve) }.fill(coarse_state)?;
     coarse.start_length = coarse.rough_length(coarse_state);
+    if options.continuation > 0 {
+        // Under tension first, which has a minimum whatever the data (thesis 4.10).
+        let own = coarse.weights.length;
+        let mut pull = STRONG_PULL * coarse.natural_cost / coarse.rough_length(coarse_state);
+        for _ in 0..options.continuation {
+            coarse.weights.length = own + pull;
+            let outcome = passes
+                .shape_and_finish(&mut coarse, CONTINUATION_DECREASE, coarse_state, work)
+                .map_err(wrong)?;
+            if matches!(outcome.status, Status::Cancelled | Status::IterationLimit) {
+                break;
+            }
+            pull *= 0.1;
+        }
+        coarse.weights.length = own;
+    }
+    let improved = if options.continuation > 0 {
+        None
+    } else {
+        natural::improve(&coarse, length, begin.bent(curve), coarse_state, work, &mut |sums, step| {
+            passes.note(coarse.value_of(sums), step)
+        })
+    };
+    passes.multiplier = improved.map_or(0.0, |improved| improved.tension);
+    if improved.is_some_and(|improved| improved.grows) {
+        // Only whether it goes on growing is left to find out.
+        passes.hurry(MOST_GROWING);
+    }
     let parts = options.elements_per_span as usize;
     let aim =
         Aim { tolerance: options.tolerance / place.unit, most_per_span: parts, relative_decrease: decrease };
     model.start_length = coarse.start_length;
     if parts > 1
         && curve.obstacles.is_empty()
-        && tension.is_some()
-        && let Some(found) = natural::trace(&coarse, length, coarse_state, traced, &mut |sums, step| {
-            passes.note(coarse.value_of(sums), step)
-        })
+        && improved.is_some()
+        && let Some(found) =
+            natural::trace(&coarse, length, coarse_state, begin.bent(curve), traced, &mut |sums, step| {
+                passes.note(coarse.value_of(sums), step)
+            })
     {
         if options.tolerance == 0.0 {
             // The elements' minimum is next to the true one.
@@ -347,7 +499,7 @@ where
     }
     let tolerance =
         if parts == 1 || options.tolerance > 0.0 { decrease } else { COARSE_DECREASE.max(decrease) };
-    let mut outcome = if tension.is_some() {
+    let mut outcome = if improved.is_some() || options.continuation > 0 {
         passes.finish(&mut coarse, tolerance, coarse_state, work)
     } else {
         passes.shape_and_finish(&mut coarse, tolerance, coarse_state, work)
@@ -369,7 +521,8 @@ where
             base = parts.min(LEAST_PARTS);
             let mut divided = Model { division: Division::Even(base), ..model };
             let divided_state = &mut state[..divided.state_len()];
-            divided.natural_cost = Start { model: &divided, place, parts: base }.fill(divided_state)?;
+            divided.natural_cost = Start { model: &divided, place, parts: base, turned: begin.turned(curve) }
+                .fill(divided_state)?;
             outcome = passes.shape_and_finish(&mut divided, decrease, divided_state, work).map_err(wrong)?;
         }
         counts.fill(base as f64);
@@ -398,7 +551,8 @@ where
         }
     } else {
         let state = &mut state[..model.state_len()];
-        model.natural_cost = Start { model: &model, place, parts }.fill(state)?;
+        model.natural_cost =
+            Start { model: &model, place, parts, turned: begin.turned(curve) }.fill(state)?;
         outcome = passes.shape_and_finish(&mut model, decrease, state, work).map_err(wrong)?;
     }
     Ok(hand_over(&model, &outcome, &passes, state, elements, options))
@@ -470,12 +624,16 @@ where
         Outcome { iterations: passes.iterations, linearisations: passes.linearisations, ..*outcome };
     let figures = figures_of(model, state);
     let mut report = report(model, &outcome, elements, &figures, options);
+    let growth = model.rough_length(state) / model.start_length;
+    let gave_up = matches!(report.status, Status::IterationLimit | Status::Stalled);
+    if gave_up && growth > if passes.hurries() { GROWS } else { SUSPECT_GROWTH } {
+        report.status = Status::Unbounded;
+    }
     if report.status == Status::Converged {
         let regular = figures.irregular == 0;
         let natural = model.natural_cost() * functional_scale(options, model.place.unit);
         let trusted =
             (report.fine_value - report.value).abs() <= TRUSTED * (report.value + NOTHING * natural);
-        let growth = model.rough_length(state) / model.start_length;
         let grown = growth > SUSPECT_GROWTH;
         if !(regular && trusted) {
             // What was minimised is not what the elements are: no minimum was found.
@@ -499,6 +657,10 @@ fn functional_scale(options: &Options, unit: f64) -> f64 {
 
 /// With one element a span on the way to more, a functional to this fraction is enough.
 const COARSE_DECREASE: f64 = 1e-7;
+/// By how much the first tension of a continuation outweighs the functional.
+const STRONG_PULL: f64 = 10.0;
+/// How well the stages of a continuation are solved.
+const CONTINUATION_DECREASE: f64 = 1e-4;
 /// Where one element a span has no minimum, a tolerance begins with so many.
 const LEAST_PARTS: usize = 4;
 /// How far a finer quadrature may be off, as a fraction of the functional.
@@ -507,6 +669,10 @@ const TRUSTED: f64 = 1e-4;
 const NOTHING: f64 = 1e-9;
 /// A curve that is wrong, and grew by more than this from its start, was on its way to infinity.
 const SUSPECT_GROWTH: f64 = 10.0;
+/// How many iterations a curve gets that grows already when its directions alone are solved for, and how much it must have
+/// grown if they do not end otherwise.
+const MOST_GROWING: usize = 60;
+const GROWS: f64 = 3.0;
 /// No curve with a minimum grows by more than this.
 const GREAT_GROWTH: f64 = 50.0;
 
@@ -607,7 +773,7 @@ mod tests {
         let coarse = Model { division: Division::Even(1), ..fine };
         let (mut coarse_state, mut state) = ([0.0; 100], [0.0; 300]);
         assert!(
-            Start { model: &coarse, place: &place, parts: 1 }
+            Start { model: &coarse, place: &place, parts: 1, turned: None }
                 .fill(&mut coarse_state[..coarse.state_len()])
                 .is_ok()
         );

@@ -80,6 +80,8 @@ pub(super) struct Start<'m, 'a, const D: usize> {
     pub(super) place: &'m Placement<D>,
     /// Elements a span.
     pub(super) parts: usize,
+    /// Whose start tangent looks the other way, if anybody's.
+    pub(super) turned: Option<usize>,
 }
 
 /// How a tangent gets its start value.
@@ -205,6 +207,12 @@ where
     }
 
     fn tangent(&self, joint: usize, side: usize, state: &[f64]) -> SVector<f64, D> {
+        let found = self.usual_tangent(joint, side, state);
+        let kept = self.joints()[joint].tangent[side].given == Given::FIXED;
+        if self.turned == Some(joint) && !kept { -found } else { found }
+    }
+
+    fn usual_tangent(&self, joint: usize, side: usize, state: &[f64]) -> SVector<f64, D> {
         let data = &self.joints()[joint];
         let here = self.point(joint, state);
         let found = match self.rule(joint, side) {
@@ -249,7 +257,10 @@ where
             return self.free_curvature(joint, side, tangent, state);
         }
         let vector = self.place.local_curvature(&given.value);
-        let across = unit(&(vector - tangent * vector.dot(tangent)));
+        let beside = vector - tangent * vector.dot(tangent);
+        // What rounding leaves of a vector along the tangent has no direction, and not even to the side.
+        let across =
+            unit(&beside).filter(|_| beside.dot(&beside) > UNDECIDED * UNDECIDED * vector.dot(&vector));
         if given.given != Given::SIZE {
             let size = libm::sqrt(vector.dot(&vector));
             return across.map_or(vector, |across| across * size);

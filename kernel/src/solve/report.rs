@@ -35,8 +35,8 @@ impl Status {
                 "stopped at the iteration limit: allow more iterations, or give better start values"
             }
             Self::Unbounded => {
-                "unbounded: the curve grows without limit while the functional sinks; add a constraint, \
-                 or choose a functional that has a minimum"
+                "unbounded: the curve grows without limit while the functional sinks; a scale-invariant functional, \
+                 a tension or a given length has a minimum, and so have more constraints"
             }
             Self::Cancelled => "cancelled by the observer",
         }

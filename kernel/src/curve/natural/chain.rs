@@ -124,12 +124,13 @@ fn angle<const D: usize>(a: &SVector<f64, D>, b: &SVector<f64, D>) -> f64 {
 }
 
 impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
-    /// The chain of a curve with one element a span, from its state. `None` where a span cannot be closed. `memory` holds
+    /// The chain of a curve with one element a span, from its state; the span `bent`, if any, closed the second-nearest way. `None` where a span cannot be closed. `memory` holds
     /// [`memory_len`] numbers.
     pub(super) fn of<const D: usize>(
         tables: &'static Tables<N, C>,
         model: &Model<'_, D>,
         state: &[f64],
+        bent: Option<usize>,
         memory: &'w mut [f64],
     ) -> Option<Self>
     where
@@ -156,7 +157,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
                 let (_, shared) = model.shares(joint);
                 bends && (!shared || (!closed && (joint == 0 || joint + 1 == joints)))
             });
-            if !span.close(tables, alone) {
+            if !span.close(tables, alone, usize::from(bent == Some(index))) {
                 return None;
             }
             span.store(&mut memory[4..]);

@@ -121,9 +121,14 @@ impl<const N: usize> Span<N> {
     }
 
     /// Closes the span for a start: bends it between its ends, as little as possible, until it runs along its chord. Where
-    /// the curvature at an end is the span's own, that is bent too, so that the curvature changes evenly. Returns whether it
-    /// could.
-    pub(super) fn close<const C: usize>(&mut self, tables: &Tables<N, C>, alone: [bool; 2]) -> bool {
+    /// the curvature at an end is the span's own, that is bent too, so that the curvature changes evenly. As many ways to
+    /// close it as `skip` says are passed over. Returns whether it could.
+    pub(super) fn close<const C: usize>(
+        &mut self,
+        tables: &Tables<N, C>,
+        alone: [bool; 2],
+        skip: usize,
+    ) -> bool {
         let [phi0, k0, phi1, k1] = self.shared;
         let turn = phi1 - phi0;
         let stretched = self.length();
@@ -153,7 +158,15 @@ impl<const N: usize> Span<N> {
         };
         // The nearest change of sign, either way, with the span running forward.
         let [here, forward] = reach(0.0);
-        let mut best = (here.abs() < 1e-12 && forward > LEAST_REACH).then_some(0.0);
+        let mut skip = skip;
+        let mut best = None;
+        if here.abs() < 1e-12 && forward > LEAST_REACH {
+            if skip == 0 {
+                best = Some(0.0);
+            } else {
+                skip -= 1;
+            }
+        }
         let mut last = [here; 2];
         let mut step = 0;
         while best.is_none() && step < MOST_BEND {
@@ -174,8 +187,14 @@ impl<const N: usize> Span<N> {
                     }
                     let [_, forward] = reach(root);
                     let nearer = best.is_none_or(|best: f64| root.abs() < best.abs());
-                    if forward > LEAST_REACH && nearer {
-                        best = Some(root);
+                    // From 0 on the sign changes at once: that is the way that was passed over.
+                    let again = step == 1 && here.abs() < 1e-12;
+                    if forward > LEAST_REACH && nearer && !again {
+                        if skip == 0 {
+                            best = Some(root);
+                        } else {
+                            skip -= 1;
+                        }
                     }
                 }
                 *last = value;

@@ -40,6 +40,7 @@ pub(in crate::curve) fn trace<'w, const D: usize>(
     model: &Model<'_, D>,
     length: Option<f64>,
     state: &[f64],
+    bent: Option<usize>,
     memory: &'w mut [f64],
     watch: &mut Watch<'_>,
 ) -> Option<TrueCurve<'w>>
@@ -49,7 +50,7 @@ where
     if !applies(model) {
         return None;
     }
-    let mut chain = Chain::of(&FINE, model, state, memory)?;
+    let mut chain = Chain::of(&FINE, model, state, bent, memory)?;
     let (mut weigh, law) = task(model, length);
     (chain.settle(&mut weigh, law, &WHOLE, watch) == Ended::Settled).then_some(TrueCurve { chain })
 }
