@@ -8,6 +8,7 @@
 # make bench         minvar against Ceres, libspiro and OpenCASCADE, as ratios in one run (some minutes)
 # make memory        bytes of workspace, stack and code
 # make pictures      draws docs/*.svg anew
+# make figures       draws the figures of thesis chapter 4 into docs/figures, with Table 4.1 computed anew
 # make help          this text
 #
 # Every target installs what it needs from Debian's packages, if it may.
@@ -20,10 +21,10 @@ OUT := coving
 LIB := target/release/libminvar.a
 WARN := -std=c11 -Wall -Wextra -Wpedantic -Wconversion -Werror
 
-.PHONY: coving test test-clients lint header help tools lib examples table random bench peer-tools memory pictures clean
+.PHONY: coving test test-clients lint header help tools lib examples table random bench peer-tools memory pictures figures clean
 
 help:
-	@sed -n 's/^# \{0,1\}//p' Makefile | head -13
+	@sed -n 's/^# \{0,1\}//p' Makefile | head -14
 
 tools:
 	@command -v $(CARGO) >/dev/null || { echo "minvar needs Rust 1.89 or later: https://rustup.rs" >&2; exit 1; }
@@ -116,6 +117,11 @@ pictures: tools
 		--polygon "0,0 6,0 6,-6 0,-6"
 	target/release/minvar curve tests/data/curves/woodford.mvc --svg docs/woodford.svg
 	target/release/minvar curve tests/data/curves/peters_helix.mvc --svg docs/peters_helix.svg
+
+# Chapter 4 of the thesis, from Appendix A: one picture a figure and a page that shows them.
+figures: tools
+	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "the reference that Table 4.1 is compared with"
+	$(CARGO) run --locked --release -p minvar-tests --bin figures
 
 lint: tools
 	$(CARGO) fmt --all --check

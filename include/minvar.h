@@ -179,6 +179,13 @@ typedef enum minvar_functional {
     MINVAR_SI_MVC = 2,
     // The scale-invariant MEC, L times the bending energy.
     MINVAR_SI_MEC = 3,
+    // The variation of curvature and torsion, integral of (d kappa/ds)^2 + (d tau/ds)^2 ds (thesis 4.4); 1/length^3. It
+    // vanishes on helices; torsion is continuous at G2 joints. Where a curve has an inflection, torsion counts less near
+    // it. Planar data: MINVAR_MVC.
+    MINVAR_SPACE_MVC = 4,
+    // The energy of bending and twisting, integral of kappa^2 + tau^2 ds (thesis 4.3); 1/length. Planar data:
+    // MINVAR_MEC.
+    MINVAR_SPACE_MEC = 5,
 } minvar_functional;
 
 // The unit of all lengths of a program: the curve's, the tolerance's and the feed's.

@@ -75,12 +75,15 @@ enum class Given : std::uint32_t {
 enum class Continuity : std::uint32_t { G0 = MINVAR_G0, G1 = MINVAR_G1, G2 = MINVAR_G2 };
 
 /// What a curve is to minimise: the variation of curvature (Mvc), the bending energy (Mec), or their scale-invariant forms,
-/// L^3 times the one (SiMvc) and L times the other (SiMec).
+/// L^3 times the one (SiMvc) and L times the other (SiMec), or those of space curves that count torsion too, as the square
+/// of its change (SpaceMvc) or its own (SpaceMec).
 enum class Functional : std::uint32_t {
     Mvc = MINVAR_MVC,
     Mec = MINVAR_MEC,
     SiMvc = MINVAR_SI_MVC,
     SiMec = MINVAR_SI_MEC,
+    SpaceMvc = MINVAR_SPACE_MVC,
+    SpaceMec = MINVAR_SPACE_MEC,
 };
 
 /// How a computation ended.

@@ -6,6 +6,7 @@ pub mod bench;
 pub mod ceres;
 pub mod compare;
 pub mod curves;
+pub mod figures;
 pub mod paths;
 pub mod random;
 pub mod toolchain;

@@ -46,6 +46,18 @@ pub const fn basis(t: f64) -> [[f64; 6]; 4] {
     ]
 }
 
+/// The fourth derivatives of the six blending functions at one parameter, as [`basis`] has those to third order.
+pub const fn fourth(t: f64) -> [f64; 6] {
+    [
+        360.0 - 720.0 * t,
+        192.0 - 360.0 * t,
+        36.0 - 60.0 * t,
+        -24.0 + 60.0 * t,
+        168.0 - 360.0 * t,
+        -360.0 + 720.0 * t,
+    ]
+}
+
 /// The six Bézier control points of the quintic with the given Hermite rows, a row a coordinate vector.
 pub fn to_bezier<const D: usize>(rows: &[[f64; D]; 6]) -> [[f64; D]; 6] {
     let mut points = [[0.0; D]; 6];

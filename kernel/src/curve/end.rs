@@ -65,10 +65,11 @@ impl Coordinate {
     #[inline]
     pub(super) const fn orders(self) -> Range<usize> {
         match self {
-            Self::Point(_) | Self::Along(_) => 0..1,
+            Self::Point(_) | Self::Along(_) | Self::Across(_) => 0..1,
             Self::Roll(_) => 0..3,
             Self::Tangent(_) | Self::Speed => 1..3,
             Self::Curvature(_) | Self::Turn | Self::Stretch => 2..3,
+            Self::Torsion => 0..0,
         }
     }
 }
@@ -83,9 +84,13 @@ pub(super) enum Coordinate {
     /// The turn of a tangent whose point rolls along with it around a centre that lies at this distance to the left (to the
     /// right if it is negative); the plane only.
     Roll(f64),
+    /// The motion along a normal: of a point that does not slide along its curve.
+    Across(usize),
     Tangent(usize),
     Curvature(usize),
     Turn,
+    /// The torsion of a node, which the end does not know.
+    Torsion,
     Speed,
     Stretch,
 }
@@ -106,7 +111,8 @@ impl<const D: usize> End<D> {
                 unit[d] = 1.0;
                 [unit, zero, zero]
             }
-            Coordinate::Along(_) => [zero; 3],
+            Coordinate::Along(_) | Coordinate::Torsion => [zero; 3],
+            Coordinate::Across(j) => [self.frame[j + 1], zero, zero],
             Coordinate::Roll(centre) => {
                 let [_, first, second] = self.tangent_map(Coordinate::Tangent(0));
                 [tangent * centre, first, second]

@@ -17,6 +17,8 @@ pub(super) struct Figures {
     /// `∫ κ² ds`.
     pub(super) bending: f64,
     pub(super) length: f64,
+    /// What of the functional knows torsion.
+    pub(super) space: f64,
     /// Elements with a cusp, or that stop.
     pub(super) irregular: usize,
 }
@@ -50,7 +52,7 @@ impl Figures {
 }
 
 /// The two halves of an element.
-fn halves<const D: usize>(rows: &[SVector<f64, D>; 6]) -> [[SVector<f64, D>; 6]; 2] {
+pub(super) fn halves<const D: usize>(rows: &[SVector<f64, D>; 6]) -> [[SVector<f64, D>; 6]; 2] {
     let basis = const { hermite::basis(0.5) };
     let [p, v, a] = [0, 1, 2].map(|order: usize| combine(rows, &basis[order]));
     // A half's parameter runs half as fast: C' halves, C'' is quartered.

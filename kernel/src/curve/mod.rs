@@ -52,8 +52,8 @@ mod passes;
 mod placement;
 mod rows;
 mod solve;
+mod space;
 mod start;
-#[cfg_attr(not(test), expect(dead_code, reason = "the space functionals are not offered yet"))]
 mod torsion;
 
 pub use element::Element;

@@ -13,6 +13,8 @@ use super::joint::{Continuity, Curve, Given, Joint};
 use super::obstacle::Side;
 use super::placement::Placement;
 use super::rows::{Integrand, Mirrored, RowDerivatives};
+use super::space::Space;
+use super::torsion::SpaceFunctional;
 use crate::basis::mirrored::{pair_count, pairs};
 use crate::solve::{BlockList, Coupled, Problem, packed};
 use core::ops::Range;
@@ -23,8 +25,20 @@ const fn side_len(d: usize) -> usize {
     d * d + d
 }
 
-/// The most local unknowns of an element in space, 9 an end.
-const MOST_LOCAL: usize = 18;
+/// Numbers of the state that a node of a space curve has for its torsion: the torsion, the multiplier that makes the
+/// elements agree in it, and the weight with which they are held to it.
+const fn torsion_len(d: usize) -> usize {
+    if d == 3 { 3 } else { 0 }
+}
+
+/// The weight with which the torsion of an element's end is held to its node's, times the speed there. What is left of
+/// a jump after one minimisation falls by about such a factor with every correction of the multipliers.
+const TIE: f64 = 200.0;
+/// The same where a solution with fewer elements is known: a stiff tie keeps to it.
+const STIFF_TIE: f64 = 1000.0;
+
+/// The most local unknowns of an element in space, 10 an end.
+const MOST_LOCAL: usize = 20;
 
 type Coordinates = heapless::Vec<(usize, Coordinate), MOST_LOCAL>;
 
@@ -76,6 +90,8 @@ enum PointFreedom {
     Free,
     Line,
     Plane,
+    /// Free but for the motion along the curve.
+    Across,
 }
 
 /// A curve in its local system.
@@ -86,6 +102,8 @@ pub(super) struct Model<'a, const D: usize> {
     pub(super) division: Division<'a>,
     pub(super) functional: Functional,
     pub(super) weights: Weights,
+    /// What of it knows torsion, beside the weights; space curves only.
+    pub(super) space: Option<Space>,
     /// A length that is approached.
     pub(super) goal: Option<Goal>,
     /// The contacts: three times the obstacle's number, plus 0 for its first end, 1 for its other, 2 for between.
@@ -131,7 +149,13 @@ impl<const D: usize> Model<'_, D> {
     /// The natural size of an element of this length: what each integral is on an arc that turns by one radian or so.
     pub(super) fn natural_of(&self, length: f64) -> f64 {
         let Weights { variation, bending, length: tension } = self.weights;
-        variation / (length * length * length) + bending / length + tension * length
+        // The space functionals are natural like those of the plane.
+        let own = match (self.space.is_some(), self.functional.bends()) {
+            (false, _) => 0.0,
+            (true, true) => 1.0 / length,
+            (true, false) => 1.0 / (length * length * length),
+        };
+        own + variation / (length * length * length) + bending / length + tension * length
     }
 
     /// The functional by its integrals: variation, bending and length.
@@ -179,7 +203,7 @@ impl<const D: usize> Model<'_, D> {
     }
 
     fn node_start(node: usize) -> usize {
-        node * (D + side_len(D))
+        node * (D + side_len(D) + torsion_len(D))
     }
 
     /// Where in the state a node's point stands.
@@ -193,7 +217,7 @@ impl<const D: usize> Model<'_, D> {
     }
 
     fn element_start(&self, element: usize) -> usize {
-        self.node_count() * (D + side_len(D)) + element * (4 + 2 * side_len(D))
+        Self::node_start(self.node_count()) + element * (4 + 2 * side_len(D))
     }
 
     fn continuity(&self, node: usize) -> Continuity {
@@ -215,7 +239,9 @@ impl<const D: usize> Model<'_, D> {
     /// What is free at a side of a node; side 0 arrives, side 1 leaves.
     fn freedom(&self, node: usize, side: usize) -> Freedom {
         let Some(joint) = self.joint(node) else {
-            return Freedom { point: PointFreedom::Free, tangent: true, curvature: CurvatureFreedom::Free };
+            // Where a node stands along the curve hardly matters, but its torsion would have to follow.
+            let point = if self.space.is_some() { PointFreedom::Across } else { PointFreedom::Free };
+            return Freedom { point, tangent: true, curvature: CurvatureFreedom::Free };
         };
         let point = match joint.position.given {
             Given::FIXED => PointFreedom::Fixed,
@@ -270,6 +296,7 @@ impl<const D: usize> Model<'_, D> {
         match freedom.point {
             PointFreedom::Fixed => {}
             PointFreedom::Free => (0..D).for_each(|d| visit(Coordinate::Point(d))),
+            PointFreedom::Across => (0..D - 1).for_each(|j| visit(Coordinate::Across(j))),
             PointFreedom::Line => visit(Coordinate::Along(0)),
             PointFreedom::Plane => (0..D - 1).for_each(|k| visit(Coordinate::Along(k))),
         }
@@ -278,6 +305,9 @@ impl<const D: usize> Model<'_, D> {
         }
         if continuity == Continuity::G2 {
             Self::curvature_coordinates(freedom.curvature, &mut visit);
+        }
+        if self.is_tied(node) {
+            visit(Coordinate::Torsion);
         }
     }
 
@@ -358,6 +388,88 @@ impl<const D: usize> Model<'_, D> {
         rows_between(&[self.end(element, 0, state), self.end(element, 1, state)])
     }
 
+    /// Whether the elements at a node have a torsion in common.
+    fn is_tied(&self, node: usize) -> bool {
+        let inside = self.curve.closed || (node > 0 && node < self.element_count());
+        inside
+            && D == 3
+            && self.space.is_some_and(|space| space.functional == SpaceFunctional::Mvc)
+            && self.continuity(node) == Continuity::G2
+    }
+
+    /// Where in the state a tied node's torsion, multiplier and weight stand.
+    fn torsion_place(&self, node: usize) -> Option<usize> {
+        self.is_tied(node).then(|| Self::node_start(node) + D + side_len(D))
+    }
+
+    /// The weight with which an end's torsion is held, and what it is held to.
+    fn tie(&self, element: usize, end: usize, state: &[f64]) -> Option<[f64; 2]> {
+        self.space.filter(|space| space.tied)?;
+        let at = self.torsion_place(self.node(element, end))?;
+        // The first end leaves its node, the second arrives.
+        let multiplier = if end == 0 { state[at + 1] } else { -state[at + 1] };
+        Some([state[at + 2], state[at] + multiplier])
+    }
+
+    /// The torsions of the two elements that meet at a tied node, and their rates of change: of the arriving one and of
+    /// the leaving one.
+    fn torsions_at(&self, node: usize, state: &[f64]) -> [[f64; 2]; 2] {
+        let Some(space) = self.space else { return [[0.0; 2]; 2] };
+        let count = self.element_count();
+        let before = (node + count - 1) % count.max(1);
+        let at = |element: usize, end: usize| space.torsion_and_slope(&self.rows(element, state), end);
+        [at(before, 1), at(node, 0)]
+    }
+
+    /// Gives every tied node the mean torsion of its elements, and the weight that belongs to their speeds.
+    pub(super) fn begin_ties(&self, state: &mut [f64]) {
+        let count = self.element_count();
+        let tie = if self.division == Division::Even(1) { TIE } else { STIFF_TIE };
+        for node in 0..self.node_count() {
+            let Some(at) = self.torsion_place(node) else { continue };
+            let [[one, one_slope], [other, other_slope]] = self.torsions_at(node, state);
+            let before = (node + count - 1) % count;
+            let speed = state[self.element_start(before) + 2].min(state[self.element_start(node)]);
+            state[at] = 0.5 * (one + other);
+            state[at + 2] = tie / speed;
+            state[at + 1] = -0.5 * (one_slope + other_slope) / state[at + 2];
+        }
+    }
+
+    /// Corrects the multipliers of all ties by what the torsions jump, and returns the largest jump as a fraction of the
+    /// torsion or of the typical curvature, whichever is larger; 0 where nothing is tied.
+    pub(super) fn correct_ties(&self, state: &mut [f64]) -> f64 {
+        let scale = self.space.map_or(1.0, |space| space.scale());
+        let mut most = 0.0;
+        for node in 0..self.node_count() {
+            let Some(at) = self.torsion_place(node) else { continue };
+            let [[one, _], [other, _]] = self.torsions_at(node, state);
+            state[at + 1] += 0.5 * (one - other);
+            let jump = (one - other).abs() / scale.max(one.abs());
+            most = if jump > most { jump } else { most };
+        }
+        most
+    }
+
+    /// Whether the curve ends without curvature, as one of least energy does where its end may turn.
+    pub(super) fn ends_straight(&self) -> bool {
+        let free = |node: usize, side: usize| self.bends_and_turns(node, side) == (true, true);
+        !self.curve.closed
+            && self.space.is_some_and(|space| space.functional == SpaceFunctional::Mec)
+            && (free(0, 1) || free(self.element_count(), 0))
+    }
+
+    /// The least curvature of a space curve.
+    pub(super) fn least_curvature(&self, state: &[f64]) -> f64 {
+        let mut least = f64::INFINITY;
+        if let Some(space) = &self.space {
+            for element in 0..self.element_count() {
+                least = least.min(space.least_curvature(&self.rows(element, state)));
+            }
+        }
+        least
+    }
+
     /// Half the sum of the speeds: about the length, and cheap.
     pub(super) fn rough_length(&self, state: &[f64]) -> f64 {
         let mut sum = 0.0;
@@ -378,14 +490,17 @@ where
             let rows = reference.elements.get(element)?.rows.map(|row| self.place.local_vector(&row));
             Some((Mirrored::of(&rows), reference.weight))
         });
-        Integrand { weights: self.weights, gauge: self.gauge, rule: pairs(self.points), reference }
+        let mut weights = self.weights;
+        weights.variation += self.space.as_ref().map_or(0.0, Space::plain_variation);
+        Integrand { weights, gauge: self.gauge, rule: pairs(self.points), reference }
     }
 
     /// What is summed when the two sums count by these weights.
     fn combined(&self, element: usize, [own, length]: [f64; 2]) -> Integrand<D> {
-        let mut weights = self.weights.times(own);
+        let plain = self.integrand(element);
+        let mut weights = plain.weights.times(own);
         weights.length += length;
-        Integrand { weights, gauge: self.gauge * own, ..self.integrand(element) }
+        Integrand { weights, gauge: self.gauge * own, ..plain }
     }
 
     /// The direction in which a node slides.
@@ -450,6 +565,10 @@ where
                     }
                 }
             }
+            if one == Coordinate::Torsion {
+                slope = by_rows.ties[end].slope;
+                along = by_rows.ties[end].mixed.map(SVector::from);
+            }
             gradient[i] = slope;
             if let Some(second) = second.get_mut(i) {
                 for order in one.orders() {
@@ -461,6 +580,15 @@ where
                 let mut sum = 0.0;
                 for order in other.orders() {
                     sum += maps[j][order].dot(&along[row_of(other_end, order)]);
+                }
+                if other == Coordinate::Torsion {
+                    let tie = &by_rows.ties[other_end];
+                    for order in one.orders() {
+                        sum += map[order].dot(&SVector::from(tie.mixed[row_of(end, order)]));
+                    }
+                    if one == Coordinate::Torsion && end == other_end {
+                        sum += tie.second;
+                    }
                 }
                 if end == other_end {
                     let [point, first, second] =
@@ -475,13 +603,41 @@ where
     /// What an element costs by its rows, and its length; infinite outside the domain.
     pub(super) fn sums_of_rows(&self, element: usize, rows: &[SVector<f64, D>; 6]) -> [f64; 2] {
         let mut guard = Guard::of(if self.guarded { pair_count(self.points) } else { 0 });
-        let sums = self.integrand(element).value(rows, |first| guard.pass(first));
-        if guard.ends_well() { sums } else { [f64::INFINITY; 2] }
+        let [own, length] = self.integrand(element).value(rows, |first| guard.pass(first));
+        if !guard.ends_well() {
+            return [f64::INFINITY; 2];
+        }
+        [own + self.space.as_ref().map_or(0.0, |space| space.value(rows, self.points)), length]
     }
 
-    /// What an element costs by its rows; infinite outside the domain.
+    /// What an element costs by its rows; infinite outside the domain. A start is judged without torsion.
     pub(super) fn cost_of_rows(&self, element: usize, rows: &[SVector<f64, D>; 6]) -> f64 {
+        if self.space.is_some() {
+            return Model { space: None, weights: Weights::VARIATION, ..*self }.sums_of_rows(element, rows)
+                [0];
+        }
         self.sums_of_rows(element, rows)[0]
+    }
+
+    /// The combination of an element's two sums by these weights, with derivatives.
+    fn linearised(
+        &self,
+        element: usize,
+        ends: &[End<D>; 2],
+        state: &[f64],
+        first: [f64; 2],
+    ) -> RowDerivatives<D> {
+        let rows = rows_between(ends);
+        let mut by_rows = self.combined(element, first).derivatives(&rows);
+        if let Some(space) = &self.space {
+            space.add(&rows, self.points, first[0], &mut by_rows);
+            for end in 0..2 {
+                if let Some([weight, target]) = self.tie(element, end, state) {
+                    space.add_tie(&rows, end, weight * first[0], target, &mut by_rows);
+                }
+            }
+        }
+        by_rows
     }
 }
 
@@ -601,7 +757,17 @@ where
         if !ends.iter().all(|end| end.speed > least) {
             return [f64::INFINITY; 2];
         }
-        self.sums_of_rows(element, &rows_between(&ends))
+        let rows = rows_between(&ends);
+        let mut sums = self.sums_of_rows(element, &rows);
+        if let Some(space) = &self.space {
+            for end in 0..2 {
+                if let Some([weight, target]) = self.tie(element, end, state) {
+                    let off = space.torsion(&rows, end) - target;
+                    sums[0] += weight * off * off;
+                }
+            }
+        }
+        sums
     }
 
     fn linearise_sums(
@@ -614,7 +780,7 @@ where
         matrix: &mut [f64],
     ) -> [f64; 2] {
         let ends = [self.end(element, 0, state), self.end(element, 1, state)];
-        let by_rows = self.combined(element, first).derivatives(&rows_between(&ends));
+        let by_rows = self.linearised(element, &ends, state, first);
         let list = self.local_coordinates(element);
         self.by_unknowns(element, &ends, &list, &by_rows, gradient, second, matrix);
         plain_sums(&by_rows, first)
@@ -630,7 +796,7 @@ where
         matrix: &mut [f64],
     ) -> Option<[f64; 2]> {
         let ends = [self.end(element, 0, state), self.end(element, 1, state)];
-        let by_rows = self.combined(element, first).derivatives(&rows_between(&ends));
+        let by_rows = self.linearised(element, &ends, state, first);
         // The ends of an open curve belong to one element too.
         let mut list = Coordinates::new();
         if !self.curve.closed && element == 0 {
@@ -671,6 +837,13 @@ where
                         point[d] += step * guide[d];
                     }
                 }
+                Coordinate::Across(j) => {
+                    let step = next();
+                    for d in 0..D {
+                        point[d] += step * side[D * (j + 1) + d];
+                    }
+                }
+                Coordinate::Torsion => side[side_len(D)] += next(),
                 _ => turn.note(coordinate, next()),
             });
             if slide != 0.0 {
@@ -703,7 +876,8 @@ where
 
     fn variants(&self) -> usize {
         let few = matches!(self.division, Division::Even(1..=3));
-        if self.gauge == 0.0 && few { SKEWS.len() } else { 0 }
+        let explores = self.space.is_none_or(|space| space.explores);
+        if self.gauge == 0.0 && few && explores { SKEWS.len() } else { 0 }
     }
 
     fn vary(&self, element: usize, variant: usize, state: &mut [f64]) {
@@ -725,11 +899,13 @@ where
         let mut put = |coordinate: Coordinate, length: f64| {
             if let Some(size) = sizes.next() {
                 *size = match coordinate {
-                    Coordinate::Point(_) | Coordinate::Along(_) | Coordinate::Speed | Coordinate::Stretch => {
-                        length
-                    }
+                    Coordinate::Point(_)
+                    | Coordinate::Along(_)
+                    | Coordinate::Across(_)
+                    | Coordinate::Speed
+                    | Coordinate::Stretch => length,
                     Coordinate::Tangent(_) | Coordinate::Roll(_) | Coordinate::Turn => 1.0,
-                    Coordinate::Curvature(_) => 1.0 / length,
+                    Coordinate::Curvature(_) | Coordinate::Torsion => 1.0 / length,
                 };
             }
         };

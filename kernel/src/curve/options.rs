@@ -24,7 +24,8 @@ pub struct Options {
     /// into at most `elements_per_span` elements each. 0 takes just `elements_per_span`. Default 0.
     pub tolerance: f64,
     /// Gauss–Lobatto points an element, 12 to 32; 0 takes 16 as long as no more are needed and 32 where they tell a
-    /// difference. Fewer than 20 can be cheated by an optimiser, which shows when the result is measured. Default 0.
+    /// difference. Fewer than 20 can be cheated by an optimiser, which shows when the result is measured. Space curves whose
+    /// torsion counts take 32 at once. Default 0.
     pub quadrature_points: u32,
     /// The largest number of iterations (trial steps). Default 500.
     pub max_iterations: u32,

@@ -2,6 +2,8 @@
 
 use super::fairness::{Density, Shape};
 use super::model::{Goal, Model};
+use super::space::Space;
+use super::torsion::SpaceFunctional;
 use crate::basis::quadrature::MAX_POINTS;
 use crate::solve::{
     self, Control, InOrder, Observer, Outcome, Problem, Record, Settings, Status, WorkspaceTooSmall,
@@ -23,6 +25,10 @@ const WORKING_DECREASE: f64 = 1e-7;
 const PENALTIES: [f64; 3] = [1e2, 1e4, 1e6];
 /// A length is met to this fraction.
 const LENGTH_MET: f64 = 1e-10;
+/// Torsion is continuous to this fraction.
+const TORSION_MET: f64 = 1e-9;
+/// More corrections of the torsions' multipliers than are needed: each makes the jumps a hundred times smaller.
+const MOST_TORSION_CORRECTIONS: usize = 6;
 /// More corrections of a length's multiplier than are ever needed.
 const MOST_CORRECTIONS: usize = 12;
 
@@ -100,6 +106,11 @@ impl<'a> Passes<'a> {
     where
         Shape<D>: Density<D>,
     {
+        // Softened, an energy would rather turn its normal round where the curvature can be made small.
+        let gentle = soften_where_straight(model, state) || model.ends_straight();
+        let varies = model.space.is_some_and(|space| space.functional == SpaceFunctional::Mvc);
+        set_softness(model, varies || gentle);
+        model.begin_ties(state);
         let start_cost = guard(model, state);
         let natural = if start_cost > 0.0 { model.natural_cost.min(start_cost) } else { model.natural_cost };
         model.gauge = natural / model.element_count() as f64;
@@ -122,6 +133,9 @@ impl<'a> Passes<'a> {
     where
         Shape<D>: Density<D>,
     {
+        if model.space.is_some() {
+            return self.finish_in_space(model, relative_decrease, state, work);
+        }
         guard(model, state);
         if !model.chooses_points {
             return self.finish_with(model, relative_decrease, state, work);
@@ -136,6 +150,65 @@ impl<'a> Passes<'a> {
             return Ok(Outcome { value: model.couple(total(model, state)).value, ..outcome });
         }
         self.finish_with(model, relative_decrease, state, work)
+    }
+
+    /// The last pass of a functional that knows torsion: softened as long as the curve has an inflection, and exactly where it
+    /// has none.
+    fn finish_in_space<const D: usize>(
+        &mut self,
+        model: &mut Model<'_, D>,
+        relative_decrease: f64,
+        state: &mut [f64],
+        work: &mut [f64],
+    ) -> Result<Outcome, WorkspaceTooSmall>
+    where
+        Shape<D>: Density<D>,
+    {
+        let stops = |outcome: &Outcome| {
+            matches!(outcome.status, Status::Cancelled | Status::Unbounded | Status::IterationLimit)
+        };
+        if model.ends_straight() || soften_where_straight(model, state) {
+            set_softness(model, true);
+            let outcome = self.finish_tied(model, relative_decrease, state, work)?;
+            if stops(&outcome) || soften_where_straight(model, state) {
+                return Ok(outcome);
+            }
+        }
+        let outcome = self.finish_tied(model, relative_decrease, state, work)?;
+        if outcome.status == Status::Converged || stops(&outcome) {
+            return Ok(outcome);
+        }
+        set_softness(model, true);
+        self.finish_tied(model, relative_decrease, state, work)
+    }
+
+    /// The last pass, with torsion that is made continuous by the method of multipliers.
+    fn finish_tied<const D: usize>(
+        &mut self,
+        model: &mut Model<'_, D>,
+        relative_decrease: f64,
+        state: &mut [f64],
+        work: &mut [f64],
+    ) -> Result<Outcome, WorkspaceTooSmall>
+    where
+        Shape<D>: Density<D>,
+    {
+        guard(model, state);
+        model.begin_ties(state);
+        let mut corrections = 0;
+        loop {
+            let outcome = self.finish_with(model, relative_decrease, state, work)?;
+            if let Some(space) = &mut model.space {
+                space.explores = false;
+            }
+            let stopped = !matches!(outcome.status, Status::Converged | Status::Stalled);
+            let jump = model.correct_ties(state);
+            let most = if relative_decrease > LOOSE { 1 } else { MOST_TORSION_CORRECTIONS };
+            if stopped || jump <= TORSION_MET || corrections >= most {
+                return Ok(Outcome { value: total(model, state)[0], ..outcome });
+            }
+            corrections += 1;
+        }
     }
 
     /// The last pass with the model's rule.
@@ -227,12 +300,27 @@ impl<'a> Passes<'a> {
     }
 }
 
-/// The functional without a length's multiplier, and the length.
+fn set_softness<const D: usize>(model: &mut Model<'_, D>, softens: bool) {
+    if let Some(space) = &mut model.space {
+        space.softens = softens;
+    }
+}
+
+/// Softens torsion where the curve has an inflection, and leaves it exact where not. Returns whether it has one.
+pub(super) fn soften_where_straight<const D: usize>(model: &mut Model<'_, D>, state: &[f64]) -> bool {
+    let least = model.least_curvature(state);
+    let straight = model.space.is_some_and(|space| !space.bends(least));
+    set_softness(model, straight);
+    straight
+}
+
+/// The functional without multipliers of a length or of torsions, and the length.
 pub(super) fn total<const D: usize>(model: &Model<'_, D>, state: &[f64]) -> [f64; 2]
 where
     Shape<D>: Density<D>,
 {
     let mut sums = [0.0; 2];
+    let model = &Model { space: model.space.map(Space::untied), ..*model };
     for element in 0..model.element_count() {
         let [own, length] = model.sums(element, state);
         sums[0] += own;

@@ -6,6 +6,7 @@
 
 use super::fairness::{Density, Local, Normal, Shape, Weighted, add_evenness, evenness, quickening};
 use super::functional::Weights;
+use super::space::Tie;
 use crate::basis::lanes::Lanes;
 use crate::basis::mirrored::{COORDINATES, EVEN, Pairs};
 use nalgebra::SVector;
@@ -213,6 +214,7 @@ impl<const D: usize> Sums<D> {
             gradient: unfold_vector(&self.gradient),
             length_gradient: unfold_vector(&self.length_gradient),
             hessian: [[[[0.0; D]; D]; COORDINATES]; COORDINATES],
+            ties: [Tie::NONE; 2],
         };
         // First over the columns, then over the rows.
         for x in 0..D {
@@ -291,4 +293,6 @@ pub(super) struct RowDerivatives<const D: usize> {
     pub(super) gradient: [[f64; D]; COORDINATES],
     pub(super) length_gradient: [[f64; D]; COORDINATES],
     pub(super) hessian: [[[[f64; D]; D]; COORDINATES]; COORDINATES],
+    /// What the torsions of the nodes at the two ends do.
+    pub(super) ties: [Tie<D>; 2],
 }

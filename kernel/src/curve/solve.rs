@@ -6,7 +6,7 @@ use super::contacts::{Extended, Touching, keep_clear, most_contacts};
 use super::element::Element;
 use super::error::{CurveError, OptionName};
 use super::fairness::{Density, Shape};
-use super::figures::Figures;
+use super::figures::{Figures, halves};
 use super::functional::{Functional, Weights};
 use super::joint::{Curve, Given};
 use super::model::{Division, Goal, Model};
@@ -14,6 +14,7 @@ use super::natural;
 use super::options::Options;
 use super::passes::{self, Passes};
 use super::placement::{Place, Placement};
+use super::space::Space;
 use super::start::{Start, adopt, refine};
 use crate::basis::quadrature::MAX_POINTS;
 use crate::solve::{self, Observer, Outcome, Problem, Record, Status, WorkspaceTooSmall};
@@ -283,7 +284,12 @@ fn begin(
 fn model<'a, const D: usize>(curve: &Curve<'a>, options: &Options, place: &Placement<D>) -> Model<'a, D> {
     // The functional is brought to the local unit as a whole: its terms scale with different powers of the length.
     let square = place.unit * place.unit;
-    let own = if options.functional.bends() { Weights::BENDING } else { Weights::VARIATION };
+    let space = if D == 3 { Space::of(options.functional) } else { None };
+    let own = match (space, options.functional.bends()) {
+        (Some(_), _) => Weights::NONE,
+        (None, true) => Weights::BENDING,
+        (None, false) => Weights::VARIATION,
+    };
     let (bending, length) = if options.functional.bends() {
         (options.bending, options.tension * square)
     } else {
@@ -295,11 +301,13 @@ fn model<'a, const D: usize>(curve: &Curve<'a>, options: &Options, place: &Place
         division: Division::Even(options.elements_per_span as usize),
         functional: options.functional,
         points: match options.quadrature_points {
+            0 if space.is_some() => MAX_POINTS,
             0 => passes::WORKING_POINTS,
             points => points as usize,
         },
-        chooses_points: options.quadrature_points == 0,
+        chooses_points: options.quadrature_points == 0 && space.is_none(),
         weights: Weights { bending: own.bending + bending, length, ..own },
+        space,
         goal: None,
         contacts: &[],
         gauge: 0.0,
@@ -414,6 +422,7 @@ where
         check_elements(from)?;
         model.natural_cost = adopt(&model, place, from, state);
         model.start_length = model.rough_length(state);
+        take_scale(&mut model, state);
         if warm {
             let improved = natural::improve(&model, length, None, state, work, &mut |sums, step| {
                 passes.note(model.value_of(sums), step)
@@ -436,6 +445,8 @@ where
     let coarse_state = &mut state[..coarse.state_len()];
     coarse.natural_cost =
         Start { model: &coarse, place, parts: 1, turned: begin.turned(curve) }.fill(coarse_state)?;
+    take_scale(&mut coarse, coarse_state);
+    model.space = coarse.space;
     coarse.start_length = coarse.rough_length(coarse_state);
     if options.continuation > 0 {
         // Under tension first, which has a minimum whatever the data (thesis 4.10).
@@ -594,12 +605,31 @@ where
     Ok(hand_over(&model, &outcome, passes, state, elements, options))
 }
 
+/// Takes the typical curvature from the start.
+fn take_scale<const D: usize>(model: &mut Model<'_, D>, state: &[f64])
+where
+    Shape<D>: Density<D>,
+{
+    if model.space.is_some() {
+        let figures = figures_of(model, state);
+        if let Some(space) = &mut model.space {
+            space.take_scale(figures.bending, figures.length);
+        }
+    }
+}
+
 fn figures_of<const D: usize>(model: &Model<'_, D>, state: &[f64]) -> Figures
 where
     Shape<D>: Density<D>,
 {
     let mut figures = Figures::default();
-    (0..model.element_count()).for_each(|element| figures.add(&model.rows(element, state)));
+    (0..model.element_count()).for_each(|element| {
+        let rows = model.rows(element, state);
+        figures.add(&rows);
+        if let Some(space) = &model.space {
+            figures.space += halves(&rows).map(|half| space.value(&half, MAX_POINTS)).iter().sum::<f64>();
+        }
+    });
     figures
 }
 
@@ -622,6 +652,11 @@ where
     }
     let outcome =
         Outcome { iterations: passes.iterations, linearisations: passes.linearisations, ..*outcome };
+    let mut model = *model;
+    passes::soften_where_straight(&mut model, state);
+    let model = &model;
+    let value = if model.space.is_some() { passes::total(model, state)[0] } else { outcome.value };
+    let outcome = Outcome { value, ..outcome };
     let figures = figures_of(model, state);
     let mut report = report(model, &outcome, elements, &figures, options);
     let growth = model.rough_length(state) / model.start_length;
@@ -711,7 +746,9 @@ where
     let unit = model.place.unit;
     let (variation, bending, length) =
         (figures.variation / unit / unit / unit, figures.bending / unit, figures.length * unit);
-    let plain = if options.functional.bends() {
+    let plain = if let Some(space) = &model.space {
+        figures.space * scale + space.plain_variation() * variation + options.bending * bending
+    } else if options.functional.bends() {
         bending * (1.0 + options.bending)
     } else {
         variation + options.bending * bending
@@ -794,6 +831,86 @@ mod tests {
                         let off = at(&piece, t, order) - at(&whole, there, order) * scale;
                         assert!(off.amax() < 1e-13, "span {span} part {part} order {order}: {off}");
                     }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn an_element_that_knows_torsion_has_the_derivatives_of_its_cost() {
+        let joints = [
+            Joint::at([0.0, 0.0, 0.0]).with_tangent(Quantity::fixed([0.3, 1.0, 0.2])),
+            Joint::at([1.0, 0.4, 0.3]),
+            Joint::at([1.5, -0.4, 0.9]),
+            Joint::at([1.2, -1.0, 1.8]),
+        ];
+        let curve = Curve::open(&joints);
+        let Ok(Place::Space(place)) = Place::of(&curve, 1.0, 0) else { panic!("data in space") };
+        for (functional, softens) in [
+            (Functional::SPACE_MVC, false),
+            (Functional::SPACE_MVC, true),
+            (Functional::SPACE_MEC, false),
+            (Functional::SPACE_MEC, true),
+        ] {
+            let options = Options { functional, elements_per_span: 2, ..Options::DEFAULT };
+            let mut model = model::<3>(&curve, &options, &place);
+            let (mut memory, mut moved) = ([0.0; 400], [0.0; 400]);
+            let state = &mut memory[..model.state_len()];
+            assert!(Start { model: &model, place: &place, parts: 2, turned: None }.fill(state).is_ok());
+            take_scale(&mut model, state);
+            if let Some(space) = &mut model.space {
+                space.softens = softens;
+            }
+            model.begin_ties(state);
+            // From the node between the elements of a span to a joint: both ends are tied.
+            let element = 3;
+            let mut list = solve::BlockList::new();
+            model.element_blocks(element, &mut list);
+            let dofs: [usize; 3] = core::array::from_fn(|k| model.dofs(list[k]));
+            let count: usize = dofs.iter().sum();
+            let mut sizes = [1.0; 20];
+            let mut cost = |steps: &[(usize, f64)]| {
+                let to = &mut moved[..state.len()];
+                to.copy_from_slice(state);
+                let mut first = 0;
+                for (k, &block) in list.iter().enumerate() {
+                    let mut step = [0.0; 20];
+                    for &(i, by) in steps {
+                        if (first..first + dofs[k]).contains(&i) {
+                            step[i - first] += by;
+                        }
+                    }
+                    let range = model.state_range(block);
+                    model.retract(block, &state[range.clone()], &step[..dofs[k]], &mut to[range]);
+                    first += dofs[k];
+                }
+                model.cost(element, to)
+            };
+            let mut first = 0;
+            for (k, &block) in list.iter().enumerate() {
+                model.natural_sizes(block, state, &mut sizes[first..first + dofs[k]]);
+                first += dofs[k];
+            }
+            let (mut gradient, mut matrix) = ([0.0; 20], [0.0; 210]);
+            let value = model.linearise(
+                element,
+                state,
+                &mut gradient[..count],
+                &mut matrix[..solve::packed(count, 0)],
+            );
+            assert!((value - cost(&[])).abs() <= 1e-12 * value.abs());
+            let most = (0..count)
+                .fold(0.0f64, |most, i| most.max((matrix[solve::packed(i, i)] * sizes[i] * sizes[i]).abs()));
+            let h = 1e-4;
+            for i in 0..count {
+                let slope = (cost(&[(i, h * sizes[i])]) - cost(&[(i, -h * sizes[i])])) / (2.0 * h);
+                assert!((slope - gradient[i] * sizes[i]).abs() < 1e-6 * most, "{i}: {slope}");
+                for j in 0..=i {
+                    let mut at = |a: f64, b: f64| cost(&[(i, a * h * sizes[i]), (j, b * h * sizes[j])]);
+                    let bend =
+                        (at(1.0, 1.0) - at(1.0, -1.0) - at(-1.0, 1.0) + at(-1.0, -1.0)) / (4.0 * h * h);
+                    let found = matrix[solve::packed(i, j)] * sizes[i] * sizes[j];
+                    assert!((bend - found).abs() < 1e-5 * most, "{i} {j}: {bend} {found}");
                 }
             }
         }

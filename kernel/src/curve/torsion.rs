@@ -25,6 +25,13 @@
 //! Torsion is undefined where the curvature vanishes, and there the densities are infinite. A space curve whose
 //! curvature, changing at a rate `κ'`, falls to a small `δ` turns its normal by half a turn on a length of `δ/κ'`: the
 //! space MVC pays `π/4 (κ'/δ)³` for it.
+//!
+//! They are *softened* by a curvature `ε` with `S = U + ε² p³` for `U` in torsion's denominator: torsion is
+//! `τ κ²/(κ² + ε²)` then, which vanishes with the curvature and is constant on helices still: what is `U` and `g` in the
+//! formulas becomes `S` and `S'/2 = g + 3 ε² p² q`. The square of `κ'` has no derivatives where the curvature vanishes.
+//! It is the square of the curvature vector's change `db/ds` less `κ² τ²`, and of that the softened form takes
+//! `κ² τ² · κ²/(κ² + ε²) = w² / (S p³)` away: at inflections it is the square of `db/ds`. That square itself is a plain
+//! density (see [`super::fairness`]) and not counted here: a softened density of the space MVC is what must be added.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -55,7 +62,7 @@ pub(crate) struct Torsion {
     pub(crate) hessian: [[Matrix; 3]; 3],
 }
 
-// Places of the invariants: torsion depends on the first two, the space MEC on three, the space MVC on all.
+// Places of the invariants: torsion and the space MEC depend on the first three, the space MVC on all.
 const U: usize = 0;
 const W: usize = 1;
 const P: usize = 2;
@@ -96,6 +103,42 @@ struct Outer {
 }
 
 impl Outer {
+    /// Those of a function of softened invariants by the invariants themselves.
+    fn hardened(mut self, x: &[f64; 6], square: f64) -> Self {
+        if square == 0.0 {
+            return self;
+        }
+        let (p, q) = (x[P], x[Q]);
+        let (by_p, mixed, by_q) = (3.0 * square * p * p, 6.0 * square * p * q, 3.0 * square * p * p);
+        let f = self.first;
+        let h = &mut self.second;
+        for row in h.iter_mut() {
+            row[P] += row[U] * by_p + row[G] * mixed;
+            row[Q] += row[G] * by_q;
+        }
+        for j in 0..6 {
+            h[P][j] += h[U][j] * by_p + h[G][j] * mixed;
+            h[Q][j] += h[G][j] * by_q;
+        }
+        let bend = 6.0 * square;
+        h[P][P] += bend * (f[U] * p + f[G] * q);
+        h[P][Q] += bend * f[G] * p;
+        h[Q][P] += bend * f[G] * p;
+        self.first[P] += f[U] * by_p + f[G] * mixed;
+        self.first[Q] += f[G] * by_q;
+        self
+    }
+
+    fn plus(mut self, other: &Self) -> Self {
+        for i in 0..6 {
+            self.first[i] += other.first[i];
+            for j in 0..6 {
+                self.second[i][j] += other.second[i][j];
+            }
+        }
+        self
+    }
+
     /// From the first derivatives and the half `i >= j` of the second ones.
     #[inline]
     fn new(first: [f64; 6], half: [[f64; 6]; 6]) -> Self {
@@ -109,20 +152,36 @@ impl Outer {
     }
 }
 
+/// The invariants with `U` and `g` softened by the square of a curvature.
+#[inline]
+fn softened(x: &[f64; 6], square: f64) -> [f64; 6] {
+    let mut out = *x;
+    let [_, _, p, q, ..] = *x;
+    out[U] += square * p * p * p;
+    out[G] += 3.0 * square * p * p * q;
+    out
+}
+
 /// The value of a density by the invariants: infinite, never NaN, where it is undefined.
 #[inline]
-fn value_at(functional: SpaceFunctional, x: &[f64; 6]) -> f64 {
-    let [big_u, w, p, q, g, v] = *x;
+fn value_at(functional: SpaceFunctional, softening: f64, x: &[f64; 6]) -> f64 {
+    let [big_u, w, p, q, _, v] = *x;
     let root = libm::sqrt(p);
+    let [big_s, _, _, _, g, _] = softened(x, softening * softening);
     let value = match functional {
         SpaceFunctional::Mvc => {
-            let h = g / big_u;
-            let k = p * h - 3.0 * q;
-            let t = (v - 2.0 * w * h) / big_u;
-            big_u * k * k / (p * p * p * p * p * root) + t * t / root
+            let h = g / big_s;
+            let t = (v - 2.0 * w * h) / big_s;
+            let of_curvature = if softening > 0.0 {
+                -w * w / (big_s * p * p * root)
+            } else {
+                let k = p * h - 3.0 * q;
+                big_u * k * k / (p * p * p * p * p * root)
+            };
+            of_curvature + t * t / root
         }
         SpaceFunctional::Mec => {
-            let torsion = w / big_u;
+            let torsion = w / big_s;
             big_u / (p * p * root) + torsion * torsion * root
         }
     };
@@ -130,58 +189,81 @@ fn value_at(functional: SpaceFunctional, x: &[f64; 6]) -> f64 {
 }
 
 /// The density of a functional at a point of a curve with derivatives `d = [C', C'', C''', C'''']`, by the parameter.
-/// Infinite where the curve is irregular and where its curvature vanishes.
-pub(crate) fn space_density(functional: SpaceFunctional, d: &[Vector; 4]) -> f64 {
+/// Infinite where the curve is irregular and, unless it is softened by some curvature, where its curvature vanishes.
+pub(crate) fn space_density(functional: SpaceFunctional, softening: f64, d: &[Vector; 4]) -> f64 {
     let [d1, d2, d3, d4] = d;
-    value_at(functional, &Invariants::at(d1, d2, d3, d4).x)
+    value_at(functional, softening, &Invariants::at(d1, d2, d3, d4).x)
 }
 
 /// The density with its exact first and second derivatives.
-pub(crate) fn space_density_derivatives(functional: SpaceFunctional, d: &[Vector; 4]) -> SpaceDensity {
+pub(crate) fn space_density_derivatives(
+    functional: SpaceFunctional,
+    softening: f64,
+    d: &[Vector; 4],
+) -> SpaceDensity {
     let [d1, d2, d3, d4] = d;
     let at = Invariants::at(d1, d2, d3, d4);
-    let value = value_at(functional, &at.x);
+    let value = value_at(functional, softening, &at.x);
     if value == f64::INFINITY {
         return SpaceDensity { value, gradient: [Vector::zeros(); 4], hessian: [[Matrix::zeros(); 4]; 4] };
     }
+    let square = softening * softening;
+    let soft = softened(&at.x, square);
     let (gradient, hessian) = match functional {
-        SpaceFunctional::Mvc => chain::<6>(d, &at, &variation(&at.x)),
-        SpaceFunctional::Mec => chain::<3>(d, &at, &bending(&at.x)),
+        SpaceFunctional::Mvc => {
+            let of_curvature =
+                if softening > 0.0 { turning_of_normal(&soft) } else { slope_of_curvature(&at.x) };
+            chain::<6>(d, &at, &of_curvature.plus(&slope_of_torsion(&soft)).hardened(&at.x, square))
+        }
+        SpaceFunctional::Mec => {
+            chain::<3>(d, &at, &bending(&at.x).plus(&twisting(&soft).hardened(&at.x, square)))
+        }
     };
     SpaceDensity { value, gradient, hessian }
 }
 
-/// The torsion of a curve with derivatives `d = [C', C'', C''']`; not finite where its curvature vanishes.
-pub(crate) fn torsion(d: &[Vector; 3]) -> f64 {
+/// The torsion of a curve with derivatives `d = [C', C'', C''']`; not finite where its curvature vanishes, unless it is
+/// softened by some curvature.
+pub(crate) fn torsion(softening: f64, d: &[Vector; 3]) -> f64 {
     let [d1, d2, d3] = d;
-    let normal = d1.cross(d2);
-    normal.dot(d3) / normal.dot(&normal)
+    let [big_s, w, ..] = softened(&Invariants::at(d1, d2, d3, &Vector::zeros()).x, softening * softening);
+    w / big_s
+}
+
+/// The torsion and its rate of change along the curve, `[τ, dτ/ds]`, of a curve with derivatives `d = [C' … C'''']`, as
+/// [`torsion`] has it.
+pub(crate) fn torsion_and_slope(softening: f64, d: &[Vector; 4]) -> [f64; 2] {
+    let [d1, d2, d3, d4] = d;
+    let [big_s, w, p, _, g, v] = softened(&Invariants::at(d1, d2, d3, d4).x, softening * softening);
+    [w / big_s, (v - 2.0 * w * (g / big_s)) / big_s / libm::sqrt(p)]
 }
 
 /// The torsion with its exact first and second derivatives.
-pub(crate) fn torsion_derivatives(d: &[Vector; 3]) -> Torsion {
+pub(crate) fn torsion_derivatives(softening: f64, d: &[Vector; 3]) -> Torsion {
     let [d1, d2, d3] = *d;
     let d = [d1, d2, d3, Vector::zeros()];
     let at = Invariants::at(&d1, &d2, &d3, &d[3]);
-    let by_u = 1.0 / at.x[U];
-    let value = at.x[W] / at.x[U];
+    let square = softening * softening;
+    let [big_s, w, ..] = softened(&at.x, square);
+    let by_u = 1.0 / big_s;
+    let value = w / big_s;
     let mut first = [0.0; 6];
     let mut half = [[0.0; 6]; 6];
     first[U] = -value * by_u;
     first[W] = by_u;
     half[U][U] = 2.0 * value * by_u * by_u;
     half[W][U] = -by_u * by_u;
-    let outer = Outer::new(first, half);
-    let ([g1, g2, g3, _], [h1, h2, h3, _]) = chain::<2>(&d, &at, &outer);
+    let outer = Outer::new(first, half).hardened(&at.x, square);
+    let ([g1, g2, g3, _], [h1, h2, h3, _]) = chain::<3>(&d, &at, &outer);
     let three = |row: [Matrix; 4]| [row[0], row[1], row[2]];
     Torsion { value, gradient: [g1, g2, g3], hessian: [three(h1), three(h2), three(h3)] }
 }
 
-/// The space MVC's derivatives by the invariants. With `c = p^(-11/2)`, `b = p^(-1/2)` and `t = τ'` it is
-/// `c (p² g²/U − 6 p q g + 9 q² U) + b t²`.
+/// The derivatives by the invariants of the space MVC's first part, with `c = p^(-11/2)`
+/// `c (p² g²/U − 6 p q g + 9 q² U)`.
 #[inline]
-fn variation(x: &[f64; 6]) -> Outer {
-    let [big_u, w, p, q, g, v] = *x;
+fn slope_of_curvature(x: &[f64; 6]) -> Outer {
+    let [big_u, _, p, q, g, _] = *x;
     let b = 1.0 / libm::sqrt(p);
     let by_p = b * b;
     let c = by_p * by_p * by_p * by_p * by_p * b;
@@ -191,7 +273,7 @@ fn variation(x: &[f64; 6]) -> Outer {
     let mut first = [0.0; 6];
     let mut half = [[0.0; 6]; 6];
 
-    // The square of κ', kept with the factor that vanishes where κ' does.
+    // Kept with the factor that vanishes where κ' does.
     let slope = c * k;
     first[U] = -slope * (p * h + 3.0 * q);
     first[P] = slope * big_u * (2.0 * h - 5.5 * k * by_p);
@@ -208,30 +290,64 @@ fn variation(x: &[f64; 6]) -> Outer {
     half[G][P] = c * (27.0 * q - 7.0 * ph);
     half[G][Q] = -6.0 * c * p;
     half[G][G] = 2.0 * c * p * p * by_u;
+    Outer::new(first, half)
+}
 
-    // The square of τ': its factor t with derivatives, then 2 b (∇t ∇tᵀ + t ∇²t).
+/// Those of what stands for it in the softened form, `−w²/U p^(-5/2)`.
+#[inline]
+fn turning_of_normal(x: &[f64; 6]) -> Outer {
+    let [big_u, w, p, ..] = *x;
+    let (by_u, by_p) = (1.0 / big_u, 1.0 / p);
+    let c = by_p * by_p * by_p * libm::sqrt(p);
+    let (ratio, square) = (w * by_u, w * w * by_u);
+    let mut first = [0.0; 6];
+    let mut half = [[0.0; 6]; 6];
+    first[U] = c * ratio * ratio;
+    first[W] = -2.0 * c * ratio;
+    first[P] = 2.5 * c * by_p * square;
+    half[U][U] = -2.0 * c * ratio * ratio * by_u;
+    half[W][U] = 2.0 * c * ratio * by_u;
+    half[W][W] = -2.0 * c * by_u;
+    half[P][U] = -2.5 * c * by_p * ratio * ratio;
+    half[P][W] = 5.0 * c * by_p * ratio;
+    half[P][P] = -8.75 * c * by_p * by_p * square;
+    Outer::new(first, half)
+}
+
+/// Those of its second part, with `b = p^(-1/2)` and `t = τ'`: `b t²`.
+#[inline]
+fn slope_of_torsion(x: &[f64; 6]) -> Outer {
+    let [big_u, w, p, _, g, v] = *x;
+    let b = 1.0 / libm::sqrt(p);
+    let by_p = b * b;
+    let by_u = 1.0 / big_u;
+    let h = g * by_u;
+    let mut first = [0.0; 6];
+    let mut half = [[0.0; 6]; 6];
+
+    // The factor t with derivatives, then 2 b (∇t ∇tᵀ + t ∇²t).
     let square = by_u * by_u;
     let wh = w * h;
     let t = (v - 2.0 * wh) * by_u;
     let (tu, tw, tg, tv) = ((4.0 * wh - v) * square, -2.0 * h * by_u, -2.0 * w * square, by_u);
     let twice = 2.0 * b;
     let linear = twice * t;
-    first[U] += linear * tu;
+    first[U] = linear * tu;
     first[W] = linear * tw;
-    first[P] -= 0.25 * linear * t * by_p;
-    first[G] += linear * tg;
+    first[P] = -0.25 * linear * t * by_p;
+    first[G] = linear * tg;
     first[V] = linear * tv;
-    half[U][U] += twice * tu * tu + linear * (2.0 * v - 12.0 * wh) * square * by_u;
+    half[U][U] = twice * tu * tu + linear * (2.0 * v - 12.0 * wh) * square * by_u;
     half[W][U] = twice * tw * tu + linear * 4.0 * h * square;
     half[W][W] = twice * tw * tw;
     let by_root = -0.5 * linear * by_p;
-    half[P][U] += by_root * tu;
+    half[P][U] = by_root * tu;
     half[P][W] = by_root * tw;
-    half[P][P] += 0.375 * linear * t * by_p * by_p;
-    half[G][U] += twice * tg * tu + linear * 4.0 * w * square * by_u;
+    half[P][P] = 0.375 * linear * t * by_p * by_p;
+    half[G][U] = twice * tg * tu + linear * 4.0 * w * square * by_u;
     half[G][W] = twice * tg * tw - linear * 2.0 * square;
-    half[G][P] += by_root * tg;
-    half[G][G] += twice * tg * tg;
+    half[G][P] = by_root * tg;
+    half[G][G] = twice * tg * tg;
     half[V][U] = twice * tv * tu - linear * square;
     half[V][W] = twice * tv * tw;
     half[V][P] = by_root * tv;
@@ -240,27 +356,41 @@ fn variation(x: &[f64; 6]) -> Outer {
     Outer::new(first, half)
 }
 
-/// The space MEC's derivatives by the invariants, `U p^(-5/2) + (w/U)² p^(1/2)`.
+/// The derivatives by the invariants of the space MEC's first part, `U p^(-5/2)`.
 #[inline]
 fn bending(x: &[f64; 6]) -> Outer {
+    let [big_u, _, p, ..] = *x;
+    let by_p = 1.0 / p;
+    let c = by_p * by_p * by_p * libm::sqrt(p);
+    let mut first = [0.0; 6];
+    let mut half = [[0.0; 6]; 6];
+    first[U] = c;
+    first[P] = -2.5 * c * big_u * by_p;
+    half[P][U] = -2.5 * c * by_p;
+    half[P][P] = 8.75 * c * big_u * by_p * by_p;
+    Outer::new(first, half)
+}
+
+/// Those of its second part, `(w/U)² p^(1/2)`.
+#[inline]
+fn twisting(x: &[f64; 6]) -> Outer {
     let [big_u, w, p, ..] = *x;
     let root = libm::sqrt(p);
     let by_p = 1.0 / p;
-    let c = by_p * by_p * by_p * root;
     let by_u = 1.0 / big_u;
     let torsion = w * by_u;
     let square = torsion * torsion;
     let mut first = [0.0; 6];
     let mut half = [[0.0; 6]; 6];
-    first[U] = c - 2.0 * root * square * by_u;
+    first[U] = -2.0 * root * square * by_u;
     first[W] = 2.0 * root * torsion * by_u;
-    first[P] = -2.5 * c * big_u * by_p + 0.5 * square * root * by_p;
+    first[P] = 0.5 * square * root * by_p;
     half[U][U] = 6.0 * root * square * by_u * by_u;
     half[W][U] = -4.0 * root * torsion * by_u * by_u;
     half[W][W] = 2.0 * root * by_u * by_u;
-    half[P][U] = -(2.5 * c + square * by_u * root) * by_p;
+    half[P][U] = -square * by_u * root * by_p;
     half[P][W] = torsion * by_u * root * by_p;
-    half[P][P] = (8.75 * c * big_u - 0.25 * square * root) * by_p * by_p;
+    half[P][P] = -0.25 * square * root * by_p * by_p;
     Outer::new(first, half)
 }
 
@@ -417,15 +547,15 @@ mod tests {
     #[test]
     fn derivatives_of_the_densities_agree_with_differences() {
         assert!(samples().len() > 100);
-        for functional in [Mvc, Mec] {
+        for (functional, softening) in [(Mvc, 0.0), (Mec, 0.0), (Mvc, 0.4), (Mec, 0.4)] {
             for d in samples() {
-                let found = space_density_derivatives(functional, &d);
-                assert_eq!(found.value.to_bits(), space_density(functional, &d).to_bits());
+                let found = space_density_derivatives(functional, softening, &d);
+                assert_eq!(found.value.to_bits(), space_density(functional, softening, &d).to_bits());
                 compare(
                     &d,
-                    |d| space_density(functional, d),
+                    |d| space_density(functional, softening, d),
                     |d| {
-                        let found = space_density_derivatives(functional, d);
+                        let found = space_density_derivatives(functional, softening, d);
                         (found.gradient, found.hessian)
                     },
                 );
@@ -437,11 +567,40 @@ mod tests {
     fn derivatives_of_torsion_agree_with_differences() {
         for [d1, d2, d3, _] in samples() {
             let d = [d1, d2, d3];
-            assert_eq!(torsion_derivatives(&d).value.to_bits(), torsion(&d).to_bits());
-            compare(&d, torsion, |d| {
-                let found = torsion_derivatives(d);
-                (found.gradient, found.hessian)
-            });
+            for softening in [0.0, 0.4] {
+                assert_eq!(
+                    torsion_derivatives(softening, &d).value.to_bits(),
+                    torsion(softening, &d).to_bits()
+                );
+                compare(
+                    &d,
+                    |d| torsion(softening, d),
+                    |d| {
+                        let found = torsion_derivatives(softening, d);
+                        (found.gradient, found.hessian)
+                    },
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn softened_torsion_vanishes_with_curvature() {
+        for [d1, d2, d3, d4] in samples() {
+            let plain = torsion(0.0, &[d1, d2, d3]);
+            let normal = d1.cross(&d2);
+            let p = d1.dot(&d1);
+            let square = normal.dot(&normal) / (p * p * p);
+            let expected = plain * square / (square + 0.09);
+            let found = torsion(0.3, &[d1, d2, d3]);
+            assert!((found - expected).abs() < 1e-13 * (1.0 + plain.abs()), "{found} {expected}");
+            // Straight here: no torsion, and densities that are finite.
+            assert_eq!(torsion(0.3, &[d1, d1 * 2.0, d3]), 0.0);
+            for functional in [Mvc, Mec] {
+                let found = space_density_derivatives(functional, 0.3, &[d1, d1 * 2.0, d3, d4]);
+                assert!(found.value.is_finite());
+                assert!(found.gradient.iter().all(|part| part.amax().is_finite()));
+            }
         }
     }
 
@@ -476,12 +635,12 @@ mod tests {
             let square = r * r + c * c;
             let (curvature, twist) = (r / square, c / square);
             let ds = speed * libm::sqrt(square);
-            let found = torsion(&[d[0], d[1], d[2]]);
+            let found = torsion(0.0, &[d[0], d[1], d[2]]);
             assert!((found - twist).abs() < 1e-13 * (1.0 + twist.abs()), "{found} {twist}");
-            let energy = space_density(Mec, &d);
+            let energy = space_density(Mec, 0.0, &d);
             let expected = (curvature * curvature + twist * twist) * ds;
             assert!((energy - expected).abs() < 1e-12 * expected, "{energy} {expected}");
-            let variation = space_density_derivatives(Mvc, &d);
+            let variation = space_density_derivatives(Mvc, 0.0, &d);
             assert!(variation.value < 1e-22, "{}", variation.value);
             for part in variation.gradient {
                 assert!(part.amax() < 1e-9, "{part}");
@@ -526,12 +685,12 @@ mod tests {
             let t = 0.157 * f64::from(i);
             let d = knot(t);
             let (k, w) = (curvature(t), twist(t));
-            assert!((torsion(&[d[0], d[1], d[2]]) - w).abs() < 1e-9, "{i}");
+            assert!((torsion(0.0, &[d[0], d[1], d[2]]) - w).abs() < 1e-9, "{i}");
             let energy = (k * k + w * w) * speed(t);
-            assert!((space_density(Mec, &d) - energy).abs() < 1e-8 * energy, "{i}");
+            assert!((space_density(Mec, 0.0, &d) - energy).abs() < 1e-8 * energy, "{i}");
             let (dk, dw) = (slope(2e-2, |x| curvature(t + x)), slope(2e-2, |x| twist(t + x)));
             let variation = (dk * dk + dw * dw) / speed(t);
-            let found = space_density(Mvc, &d);
+            let found = space_density(Mvc, 0.0, &d);
             assert!((found - variation).abs() < 1e-6 * (variation + 1e-3), "{i}: {found} {variation}");
         }
     }
@@ -544,13 +703,13 @@ mod tests {
             let g = [g1 + 1.5, g2, g3, g4];
             let scale = grow + 1.5;
             for (functional, power) in [(Mvc, scale * scale * scale), (Mec, scale)] {
-                let value = space_density(functional, &d);
+                let value = space_density(functional, 0.0, &d);
                 let close = |found: f64, expected: f64| {
                     assert!((found - expected).abs() < 1e-10 * expected, "{seed}: {found} {expected}");
                 };
-                close(space_density(functional, &d.map(|x| turn * x)), value);
-                close(space_density(functional, &d.map(|x| x * scale)), value / power);
-                close(space_density(functional, &reparametrised(&d, &g)), value * g[0]);
+                close(space_density(functional, 0.0, &d.map(|x| turn * x)), value);
+                close(space_density(functional, 0.0, &d.map(|x| x * scale)), value / power);
+                close(space_density(functional, 0.0, &reparametrised(&d, &g)), value * g[0]);
             }
         }
     }
@@ -561,8 +720,8 @@ mod tests {
         let zero = Vector::zeros();
         for functional in [Mvc, Mec] {
             for d in [[zero, a, b, c], [a, zero, b, c], [a, a * 2.0, b, c], [a, a, a, a], [zero; 4]] {
-                assert_eq!(space_density(functional, &d), f64::INFINITY);
-                let found = space_density_derivatives(functional, &d);
+                assert_eq!(space_density(functional, 0.0, &d), f64::INFINITY);
+                let found = space_density_derivatives(functional, 0.0, &d);
                 assert_eq!(found.value, f64::INFINITY);
                 assert_eq!(found.gradient, [zero; 4]);
             }
