@@ -343,25 +343,10 @@ public:
     /// then. Throws on what the observer throws, after the best curve so far has become the solution.
     const Solution &solve(const std::vector<Joint> &joints, bool closed = false, const Options &options = {},
                           const Observer &observer = {}) {
-        detail::require_abi();
-        joints_.clear();
-        for (const Joint &joint : joints) {
-            joints_.push_back(joint.data());
-        }
-        const minvar_curve curve = minvar_curve_through(joints_.data(), joints_.size(), closed ? 1 : 0);
         const minvar_options chosen = options.data();
-        std::size_t needed = 0;
-        detail::call(minvar_curve_workspace_len, &curve, &chosen, &needed);
-        if (workspace_.size() < needed) {
-            workspace_.resize(needed);
-        }
+        const minvar_curve curve = prepare(joints, closed, chosen);
         solution_.elements.resize(minvar_curve_elements_len(&curve, &chosen));
-        solution_.records.clear();
-
-        detail::ObserverBridge bridge([this, &observer](std::size_t iteration, const Record &record) {
-            solution_.records.push_back(record);
-            return !observer || observer(iteration, record);
-        });
+        detail::ObserverBridge bridge = watch(observer);
         detail::call(minvar_curve_solve, &curve, &chosen, workspace_.data(), workspace_.size(),
                      detail::minvar_hpp_observe, &bridge, solution_.elements.data(), solution_.elements.size(),
                      static_cast<minvar_record *>(nullptr), std::size_t{0}, &solution_.report);
@@ -375,23 +360,9 @@ public:
     /// minimum. Throws as solve() does.
     const Solution &update(const std::vector<Joint> &joints, bool closed = false, const Options &options = {},
                            const Observer &observer = {}) {
-        detail::require_abi();
-        joints_.clear();
-        for (const Joint &joint : joints) {
-            joints_.push_back(joint.data());
-        }
-        const minvar_curve curve = minvar_curve_through(joints_.data(), joints_.size(), closed ? 1 : 0);
         const minvar_options chosen = options.data();
-        std::size_t needed = 0;
-        detail::call(minvar_curve_workspace_len, &curve, &chosen, &needed);
-        if (workspace_.size() < needed) {
-            workspace_.resize(needed);
-        }
-        solution_.records.clear();
-        detail::ObserverBridge bridge([this, &observer](std::size_t iteration, const Record &record) {
-            solution_.records.push_back(record);
-            return !observer || observer(iteration, record);
-        });
+        const minvar_curve curve = prepare(joints, closed, chosen);
+        detail::ObserverBridge bridge = watch(observer);
         detail::call(minvar_curve_update, &curve, &chosen, workspace_.data(), workspace_.size(),
                      detail::minvar_hpp_observe, &bridge, solution_.elements.data(), solution_.elements.size(),
                      &solution_.report);
@@ -406,6 +377,31 @@ public:
     Solution take() { return std::exchange(solution_, Solution{}); }
 
 private:
+    /// The curve through joints that are kept, with memory for solving it; throws for what is wrong with joints or options.
+    minvar_curve prepare(const std::vector<Joint> &joints, bool closed, const minvar_options &options) {
+        detail::require_abi();
+        joints_.clear();
+        for (const Joint &joint : joints) {
+            joints_.push_back(joint.data());
+        }
+        const minvar_curve curve = minvar_curve_through(joints_.data(), joints_.size(), closed ? 1 : 0);
+        std::size_t needed = 0;
+        detail::call(minvar_curve_workspace_len, &curve, &options, &needed);
+        if (workspace_.size() < needed) {
+            workspace_.resize(needed);
+        }
+        return curve;
+    }
+
+    /// Begins the solution's records anew; they are written while the observer, which must outlive this, watches.
+    detail::ObserverBridge watch(const Observer &observer) {
+        solution_.records.clear();
+        return detail::ObserverBridge([this, &observer](std::size_t iteration, const Record &record) {
+            solution_.records.push_back(record);
+            return !observer || observer(iteration, record);
+        });
+    }
+
     std::vector<minvar_joint> joints_;
     std::vector<double> workspace_;
     Solution solution_;

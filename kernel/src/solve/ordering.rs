@@ -102,42 +102,41 @@ fn forget(level: &mut Indices<'_>, order: &Indices<'_>, from: usize, to: usize) 
     }
 }
 
-/// Orders the blocks, numbers the unknowns and lays out the rows of the envelope. Returns the number of entries of
-/// the envelope.
-pub(super) fn order_blocks<P: Problem + ?Sized>(problem: &P, work: &mut Workspace<'_>) -> usize {
-    let blocks = problem.blocks();
-    build_incidence(problem, work);
-    let known = problem.block_at(0).is_some();
-    let Workspace { order, offset, starts, incident, degree, level, row_first, row_start, .. } = work;
-    let graph = Graph { problem, starts, incident };
-
-    level.fill(UNSEEN);
+/// Takes the blocks in the order that the problem knows to be good. Returns how many have dofs.
+fn take_known<P: Problem + ?Sized>(problem: &P, order: &mut Indices<'_>) -> usize {
     let mut ordered = 0;
-    if known {
-        for place in 0..blocks {
-            let block = problem.block_at(place).unwrap_or(place);
-            if problem.dofs(block) > 0 {
-                level.set(block, 0);
-                order.set(ordered, block);
-                ordered += 1;
-            }
+    for place in 0..problem.blocks() {
+        let block = problem.block_at(place).unwrap_or(place);
+        if problem.dofs(block) > 0 {
+            order.set(ordered, block);
+            ordered += 1;
         }
     }
-    for block in 0..if known { 0 } else { blocks } {
+    ordered
+}
+
+/// Orders the blocks that have dofs, component by component, and returns how many there are.
+fn reverse_cuthill_mckee<P: Problem + ?Sized>(
+    graph: &Graph<'_, '_, P>,
+    degree: &mut Indices<'_>,
+    level: &mut Indices<'_>,
+    order: &mut Indices<'_>,
+) -> usize {
+    let problem = graph.problem;
+    let blocks = problem.blocks();
+    level.fill(UNSEEN);
+    for block in 0..blocks {
         let mut count = 0;
         graph.neighbours(block, |_| count += 1);
         degree.set(block, count);
     }
-
+    let mut ordered = 0;
     loop {
-        if known {
-            break;
-        }
         let root = (0..blocks)
             .filter(|&block| level.get(block) == UNSEEN && problem.dofs(block) > 0)
             .min_by_key(|&block| (degree.get(block), block));
         let Some(mut root) = root else { break };
-        let (mut end, mut depth) = search(&graph, degree, level, order, ordered, root);
+        let (mut end, mut depth) = search(graph, degree, level, order, ordered, root);
         // Restart from a block of least degree in the last level as long as that makes the structure deeper.
         loop {
             let far = (ordered..end)
@@ -146,7 +145,7 @@ pub(super) fn order_blocks<P: Problem + ?Sized>(problem: &P, work: &mut Workspac
                 .min_by_key(|&block| (degree.get(block), block))
                 .unwrap_or(root);
             forget(level, order, ordered, end);
-            let (far_end, far_depth) = search(&graph, degree, level, order, ordered, far);
+            let (far_end, far_depth) = search(graph, degree, level, order, ordered, far);
             end = far_end;
             if far_depth <= depth {
                 break;
@@ -165,6 +164,21 @@ pub(super) fn order_blocks<P: Problem + ?Sized>(problem: &P, work: &mut Workspac
         }
         ordered = end;
     }
+    ordered
+}
+
+/// Orders the blocks, numbers the unknowns and lays out the rows of the envelope. Returns the number of entries of
+/// the envelope.
+pub(super) fn order_blocks<P: Problem + ?Sized>(problem: &P, work: &mut Workspace<'_>) -> usize {
+    let blocks = problem.blocks();
+    build_incidence(problem, work);
+    let Workspace { order, offset, starts, incident, degree, level, row_first, row_start, .. } = work;
+    let graph = Graph { problem, starts, incident };
+    let mut ordered = if problem.block_at(0).is_some() {
+        take_known(problem, order)
+    } else {
+        reverse_cuthill_mckee(&graph, degree, level, order)
+    };
     // Blocks without dofs come last: they have no rows.
     for block in 0..blocks {
         if problem.dofs(block) == 0 {
