@@ -9,7 +9,7 @@ use super::end::{End, rows_between};
 use super::fairness::{Density, Shape};
 use super::model::{Contact, Model};
 use super::obstacle::Side;
-use super::passes::{Passes, total};
+use super::passes::{Passes, weights_of_sums};
 use super::rows::combine;
 use super::start::{cut, refine};
 use crate::basis::hermite;
@@ -269,7 +269,7 @@ where
         let mut strongest: Option<(f64, usize)> = None;
         if !changed {
             let model = of.touching(&touching.marks[..nodes], touching.contacts);
-            let first = model.couple(total(&model, touching.state)).first;
+            let first = weights_of_sums(&model, touching.state);
             for node in 0..nodes {
                 let mark = touching.marks[node];
                 if mark >= 0.0 {

@@ -928,6 +928,10 @@ where
     }
 
     fn natural_cost(&self) -> f64 {
+        // With a given length the plain integral is minimised.
+        if self.goal.is_some() {
+            return self.natural_cost;
+        }
         self.couple([self.natural_cost, self.start_length]).value
     }
 

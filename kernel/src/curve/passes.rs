@@ -22,7 +22,15 @@ const LOOSE: f64 = 1e-9;
 const WORKING_DECREASE: f64 = 1e-7;
 
 /// The penalties, in units of the functional, with which a given length is approached, one after the other.
-const PENALTIES: [f64; 3] = [1e2, 1e4, 1e6];
+const PENALTIES: [f64; 3] = [1e2, 1e4, 1e8];
+/// With a given length the functional is minimised to this fraction: what is left lies along the length.
+const LENGTH_DECREASE: f64 = 1e-10;
+const ROUGH_LENGTH_DECREASE: f64 = 1e-6;
+/// How many times further than by its penalty a tension is changed at once.
+const MOST_FURTHER: f64 = 1e3;
+/// A curve whose length is nearly met gets few and short steps: the tension is corrected after them.
+const FEW: usize = 4;
+const SHORT: f64 = 1e-4;
 /// A length is met to this fraction.
 const LENGTH_MET: f64 = 1e-10;
 /// Torsion is continuous to this fraction.
@@ -114,7 +122,7 @@ impl<'a> Passes<'a> {
         let start_cost = guard(model, state);
         let natural = if start_cost > 0.0 { model.natural_cost.min(start_cost) } else { model.natural_cost };
         model.gauge = natural / model.element_count() as f64;
-        let outcome = self.minimise(model, SHAPING_DECREASE, [0, 0], state, work)?;
+        let outcome = self.minimise(model, SHAPING_DECREASE, [0, 0], 1.0, state, work)?;
         model.gauge = 0.0;
         if matches!(outcome.status, Status::Cancelled | Status::Unbounded) {
             return Ok(outcome);
@@ -143,11 +151,13 @@ impl<'a> Passes<'a> {
         model.points = WORKING_POINTS;
         let outcome = self.finish_with(model, relative_decrease.max(WORKING_DECREASE), state, work)?;
         model.points = MAX_POINTS;
-        let value = guard(model, state);
-        let agrees = (value - outcome.value).abs() <= relative_decrease * (value + 1e-9 * model.natural_cost);
+        guard(model, state);
+        let value = value_of(model, state);
+        let agrees =
+            (value - outcome.value).abs() <= relative_decrease * (value + 1e-9 * model.natural_cost());
         let stopped = matches!(outcome.status, Status::Cancelled | Status::Unbounded);
         if stopped || (relative_decrease > LOOSE && agrees) {
-            return Ok(Outcome { value: model.couple(total(model, state)).value, ..outcome });
+            return Ok(Outcome { value, ..outcome });
         }
         self.finish_with(model, relative_decrease, state, work)
     }
@@ -205,7 +215,7 @@ impl<'a> Passes<'a> {
             let jump = model.correct_ties(state);
             let most = if relative_decrease > LOOSE { 1 } else { MOST_TORSION_CORRECTIONS };
             if stopped || jump <= TORSION_MET || corrections >= most {
-                return Ok(Outcome { value: total(model, state)[0], ..outcome });
+                return Ok(Outcome { value: value_of(model, state), ..outcome });
             }
             corrections += 1;
         }
@@ -223,29 +233,52 @@ impl<'a> Passes<'a> {
         Shape<D>: Density<D>,
     {
         let Some(target) = self.length else {
-            return self.minimise(model, relative_decrease, [RELAXATION; 2], state, work);
+            return self.minimise(model, relative_decrease, [RELAXATION; 2], 1.0, state, work);
         };
         // The method of multipliers: value + multiplier (L − target) + ½ penalty (L − target)².
         let mut corrections = 0;
         let mut stage = usize::from(self.multiplier != 0.0);
+        let mut last: Option<[f64; 2]> = None;
+        let mut settled = false;
         loop {
             let [value, _] = total(model, state);
             let unit = (value + 1e-3 * model.natural_cost) / (target * target);
             let penalty = PENALTIES[stage] * unit;
             model.goal = Some(Goal { target, multiplier: self.multiplier, penalty });
-            let last = stage + 1 == PENALTIES.len();
-            let decrease = if last { relative_decrease } else { 1e-6_f64.max(relative_decrease) };
-            let outcome = self.minimise(model, decrease, [RELAXATION; 2], state, work)?;
+            let is_last = stage + 1 == PENALTIES.len();
+            let decrease = if stage > 0 { LENGTH_DECREASE } else { ROUGH_LENGTH_DECREASE };
+            let before = self.iterations;
+            let (most, longest) = (self.most, if settled { SHORT } else { 1.0 });
+            if settled {
+                self.most = most.min(before + FEW);
+            }
+            let mut outcome =
+                self.minimise(model, decrease.max(relative_decrease), [RELAXATION; 2], longest, state, work)?;
+            self.most = most;
+            if settled && outcome.status == Status::IterationLimit && self.iterations < most {
+                outcome.status = Status::Converged;
+            }
+            settled = stage > 0;
             model.goal = None;
-            let [value, length] = total(model, state);
+            let length = total(model, state)[1];
             let off = length - target;
-            self.multiplier += penalty * off;
             corrections += 1;
             let stopped = !matches!(outcome.status, Status::Converged | Status::Stalled);
             let met = off.abs() <= LENGTH_MET * target;
-            if stopped || (last && (met || corrections >= MOST_CORRECTIONS)) {
+            // The tension under which the curve has the length that it has.
+            let tension = self.multiplier + penalty * off;
+            self.multiplier = tension;
+            if let Some([last_tension, last_length]) = last {
+                // The longer, the less tension: where two of them tell how much less, by that.
+                let change = off * (last_tension - tension) / (length - last_length);
+                if (0.0..=MOST_FURTHER).contains(&(change / (penalty * off))) {
+                    self.multiplier += change;
+                }
+            }
+            last = Some([tension, length]);
+            if stopped || (is_last && (met || corrections >= MOST_CORRECTIONS)) {
                 let status = if stopped || met { outcome.status } else { Status::Stalled };
-                return Ok(Outcome { value, status, ..outcome });
+                return Ok(Outcome { value: value_of(model, state), status, ..outcome });
             }
             stage = (stage + 1).min(PENALTIES.len() - 1);
         }
@@ -279,6 +312,7 @@ impl<'a> Passes<'a> {
         model: &Model<'_, D>,
         relative_decrease: f64,
         [first_relaxation, relaxation]: [usize; 2],
+        first_radius: f64,
         state: &mut [f64],
         work: &mut [f64],
     ) -> Result<Outcome, WorkspaceTooSmall>
@@ -290,7 +324,7 @@ impl<'a> Passes<'a> {
             relative_decrease,
             relaxation,
             first_relaxation,
-            ..Settings::DEFAULT
+            first_radius,
         };
         let outcome = solve::minimise(model, &settings, &InOrder, state, work, &mut [], self)?;
         self.iterations += outcome.iterations;
@@ -314,8 +348,24 @@ pub(super) fn soften_where_straight<const D: usize>(model: &mut Model<'_, D>, st
     straight
 }
 
-/// The functional without multipliers of a length or of torsions, and the length.
-pub(super) fn total<const D: usize>(model: &Model<'_, D>, state: &[f64]) -> [f64; 2]
+/// The functional without multipliers of a length or of torsions, by the model's rule.
+pub(super) fn value_of<const D: usize>(model: &Model<'_, D>, state: &[f64]) -> f64
+where
+    Shape<D>: Density<D>,
+{
+    model.couple(total(model, state)).value
+}
+
+/// How much the integral and the length count in the functional, to first order.
+pub(super) fn weights_of_sums<const D: usize>(model: &Model<'_, D>, state: &[f64]) -> [f64; 2]
+where
+    Shape<D>: Density<D>,
+{
+    model.couple(total(model, state)).first
+}
+
+/// The integral of which the functional is made, without multipliers, and the length.
+fn total<const D: usize>(model: &Model<'_, D>, state: &[f64]) -> [f64; 2]
 where
     Shape<D>: Density<D>,
 {

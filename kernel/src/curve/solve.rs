@@ -655,7 +655,7 @@ where
     let mut model = *model;
     passes::soften_where_straight(&mut model, state);
     let model = &model;
-    let value = if model.space.is_some() { passes::total(model, state)[0] } else { outcome.value };
+    let value = if model.space.is_some() { passes::value_of(model, state) } else { outcome.value };
     let outcome = Outcome { value, ..outcome };
     let figures = figures_of(model, state);
     let mut report = report(model, &outcome, elements, &figures, options);

@@ -1,7 +1,8 @@
 //! A symmetric matrix stored by the envelope of its lower triangle, and its Cholesky factor.
 //!
 //! Row `r` keeps its entries from its first column that may be non-zero to the diagonal. The factor of a positive
-//! definite matrix fills nothing outside the envelope.
+//! definite matrix fills nothing outside the envelope. A matrix with one negative eigenvalue, to which something
+//! else is added that makes it positive again, is `L D Lᵀ` with a single −1 in the diagonal `D`.
 
 use super::workspace::Indices;
 
@@ -11,7 +12,23 @@ pub(crate) struct Envelope<'a, 'w> {
     pub(crate) start: &'a Indices<'w>,
 }
 
-/// Where a factorisation stopped: the matrix is not positive definite.
+/// What a factorisation found.
+#[derive(Clone, Copy, PartialEq, Default)]
+pub(crate) struct Factored {
+    /// The row whose pivot is negative, if there is one.
+    pub(crate) negative: Option<usize>,
+}
+
+/// Which matrices are factored.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Allow {
+    /// Positive definite ones.
+    Definite,
+    /// Those with one negative eigenvalue too.
+    OneNegative,
+}
+
+/// Where a factorisation stopped: the matrix is not positive definite, or has more negative eigenvalues than are allowed.
 pub(crate) struct Indefinite {
     /// The row whose pivot is not positive.
     pub(crate) row: usize,
@@ -23,6 +40,8 @@ pub(crate) struct Indefinite {
 const PIVOT_ROUNDING: f64 = 1e-14;
 /// How well a pivot is known, as a fraction of the matrix's norm.
 const NORM_ROUNDING: f64 = 1e-16;
+/// A negative pivot that is smaller than this part of its matrix entry would spoil the digits of all others.
+const LEAST_NEGATIVE: f64 = 1e-8;
 /// The pivot of a direction without effect.
 const IMMOVABLE: f64 = 1e100;
 
@@ -88,8 +107,10 @@ impl Envelope<'_, '_> {
         matrix: &[f64],
         norm: f64,
         shift: f64,
+        allow: Allow,
         factor: &mut [f64],
-    ) -> Result<(), Indefinite> {
+    ) -> Result<Factored, Indefinite> {
+        let mut negative = None;
         for r in 0..self.rows() {
             let (first, range) = self.row(r);
             let (done, rest) = factor.split_at_mut(range.start);
@@ -99,22 +120,44 @@ impl Envelope<'_, '_> {
                 let (c_first, c_range) = self.row(c);
                 let other = &done[c_range];
                 let from = first.max(c_first);
-                let sum: f64 = dot(&row[from - first..c - first], &other[from - c_first..c - c_first]);
+                let mut sum = dot(&row[from - first..c - first], &other[from - c_first..c - c_first]);
+                if let Some(n) = negative.filter(|n| (from..c).contains(n)) {
+                    sum -= 2.0 * row[n - first] * other[n - c_first];
+                }
                 row[c - first] = (row[c - first] - sum) / other[c - c_first];
+                if negative == Some(c) {
+                    row[c - first] = -row[c - first];
+                }
             }
             let (entries, diagonal) = row.split_at_mut(r - first);
-            let pivot = diagonal[0] + shift - dot(entries, entries);
+            let mut pivot = diagonal[0] + shift - dot(entries, entries);
+            if let Some(n) = negative.filter(|n| (first..r).contains(n)) {
+                pivot += 2.0 * entries[n - first] * entries[n - first];
+            }
             let noise = PIVOT_ROUNDING * diagonal[0].abs() + NORM_ROUNDING * norm;
+            let may_be_negative = allow == Allow::OneNegative && negative.is_none();
             diagonal[0] = if pivot > noise {
                 libm::sqrt(pivot)
             } else if pivot >= -noise {
                 entries.fill(0.0);
                 IMMOVABLE
+            } else if may_be_negative && -pivot > LEAST_NEGATIVE * diagonal[0].abs() {
+                negative = Some(r);
+                libm::sqrt(-pivot)
             } else {
                 return Err(Indefinite { row: r, pivot });
             };
         }
-        Ok(())
+        Ok(Factored { negative })
+    }
+
+    /// Solves `matrix · y = x` in place.
+    pub(crate) fn solve(&self, factor: &[f64], factored: Factored, x: &mut [f64]) {
+        self.forward(factor, x);
+        if let Some(n) = factored.negative {
+            x[n] = -x[n];
+        }
+        self.backward(factor, x, self.rows());
     }
 
     /// Solves `L y = x` in place.
@@ -128,7 +171,7 @@ impl Envelope<'_, '_> {
     }
 
     /// Solves `Lᵀ y = x` in place, over the first `rows` rows.
-    pub(crate) fn backward(&self, factor: &[f64], x: &mut [f64], rows: usize) {
+    fn backward(&self, factor: &[f64], x: &mut [f64], rows: usize) {
         for r in (0..rows).rev() {
             let (first, range) = self.row(r);
             let row = &factor[range];

@@ -23,7 +23,7 @@ mod report;
 mod trust_region;
 mod workspace;
 
-pub(crate) use envelope::Envelope;
+pub(crate) use envelope::{Allow, Envelope, dot};
 pub use executor::{Executor, InOrder, Task};
 pub use minimise::{Settings, minimise};
 pub use problem::{BlockList, Coupled, MAX_ELEMENT_BLOCKS, Problem, packed, packed_len};

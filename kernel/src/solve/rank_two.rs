@@ -9,8 +9,12 @@
 //!
 //! (Sherman, Morrison and Woodbury), and the whole is positive definite exactly if both eigenvalues of `I + C M` are
 //! positive: they are those of `I + M^(1/2) C M^(1/2)`.
+//!
+//! A curve that is to be longer than it would like to be is under negative tension: `S` alone has a negative eigenvalue
+//! then. The whole is positive definite all the same if the part of `C` with its positive eigenvalue makes up for that
+//! (its determinant with `S` changes sign) and the rest does not undo it.
 
-use super::envelope::{Envelope, dot};
+use super::envelope::{Envelope, Factored, dot};
 
 /// The gradients, the matrix between them, and room for `Y`.
 pub(super) struct RankTwo<'a> {
@@ -34,11 +38,10 @@ impl<'a> RankTwo<'a> {
     }
 
     /// Takes a new factorisation. Returns whether the whole matrix is positive definite.
-    pub(super) fn factored(&mut self, envelope: &Envelope<'_, '_>, factor: &[f64]) -> bool {
+    pub(super) fn take(&mut self, envelope: &Envelope<'_, '_>, factor: &[f64], factored: Factored) -> bool {
         for (solved, gradient) in self.solved.iter_mut().zip(self.gradients) {
             solved.copy_from_slice(gradient);
-            envelope.forward(factor, solved);
-            envelope.backward(factor, solved, envelope.rows());
+            envelope.solve(factor, factored, solved);
         }
         let m: [[f64; 2]; 2] =
             core::array::from_fn(|i| core::array::from_fn(|j| dot(self.gradients[i], self.solved[j])));
@@ -47,7 +50,14 @@ impl<'a> RankTwo<'a> {
             core::array::from_fn(|j| f64::from(u8::from(i == j)) + c[i][0] * m[0][j] + c[i][1] * m[1][j])
         });
         let determinant = k[0][0] * k[1][1] - k[0][1] * k[1][0];
-        if !(determinant > 0.0 && k[0][0] + k[1][1] > 0.0) {
+        let definite = if factored.negative.is_none() {
+            determinant > 0.0 && k[0][0] + k[1][1] > 0.0
+        } else {
+            let (largest, [x, y]) = largest_eigenpair(&c);
+            let along = x * (m[0][0] * x + m[0][1] * y) + y * (m[1][0] * x + m[1][1] * y);
+            determinant < 0.0 && 1.0 + largest * along < 0.0
+        };
+        if !definite {
             return false;
         }
         let inverse = [
@@ -81,4 +91,13 @@ impl<'a> RankTwo<'a> {
             }
         }
     }
+}
+
+/// The largest eigenvalue of a symmetric matrix, and its direction, of length 1.
+fn largest_eigenpair([[a, b], [_, c]]: &[[f64; 2]; 2]) -> (f64, [f64; 2]) {
+    let (mean, half) = (0.5 * (a + c), 0.5 * (a - c));
+    let spread = libm::sqrt(half * half + b * b);
+    let (x, y) = if half >= 0.0 { (half + spread, *b) } else { (*b, spread - half) };
+    let size = libm::sqrt(x * x + y * y);
+    (mean + spread, if size > 0.0 { [x / size, y / size] } else { [1.0, 0.0] })
 }

@@ -4,7 +4,7 @@
 //! least `shift ≥ 0` that makes the matrix positive definite and the step no longer than the radius; `shift` is
 //! found by Newton's method on `1/radius − 1/|s|`, safeguarded by bounds.
 
-use super::envelope::{Envelope, dot};
+use super::envelope::{Allow, Envelope, Factored, dot};
 use super::rank_two::RankTwo;
 
 /// The radius of a trust region, and how it learns from steps.
@@ -58,26 +58,25 @@ pub(super) struct Vectors<'a> {
 
 impl Vectors<'_> {
     /// The Newton step of the factored matrix.
-    fn newton(&mut self, envelope: &Envelope<'_, '_>) {
+    fn newton(&mut self, envelope: &Envelope<'_, '_>, factored: Factored) {
         for (s, g) in self.step.iter_mut().zip(self.gradient.iter()) {
             *s = -g;
         }
-        envelope.forward(self.factor, self.step);
-        envelope.backward(self.factor, self.step, envelope.rows());
+        envelope.solve(self.factor, factored, self.step);
         if let Some(coupling) = &self.coupling {
             coupling.correct(self.step);
         }
     }
 
     /// `stepᵀ (matrix + shift)⁻¹ step` of the factored matrix.
-    fn steepness(&mut self, envelope: &Envelope<'_, '_>) -> f64 {
+    fn steepness(&mut self, envelope: &Envelope<'_, '_>, factored: Factored) -> f64 {
         self.scratch.copy_from_slice(self.step);
-        envelope.forward(self.factor, self.scratch);
         if let Some(coupling) = &self.coupling {
-            envelope.backward(self.factor, self.scratch, envelope.rows());
+            envelope.solve(self.factor, factored, self.scratch);
             coupling.correct(self.scratch);
             return dot(self.scratch, self.step);
         }
+        envelope.forward(self.factor, self.scratch);
         dot(self.scratch, self.scratch)
     }
 
@@ -109,6 +108,8 @@ pub(super) fn solve(
         norm += coupling.norm();
     }
     let gradient_length = libm::sqrt(dot(vectors.gradient, vectors.gradient));
+    // What is added may make up for a negative eigenvalue.
+    let allow = if vectors.coupling.is_some() { Allow::OneNegative } else { Allow::Definite };
     let (mut low, mut high) = (0.0f64, gradient_length / radius + norm);
     if !high.is_finite() {
         return None;
@@ -117,27 +118,30 @@ pub(super) fn solve(
     let mut have_direction = false;
     let mut best: Option<Step> = None;
     for _ in 0..MOST_FACTORISATIONS {
-        let factored = envelope.factor(matrix, sparse_norm, shift, vectors.factor);
-        let definite = match (&factored, &mut vectors.coupling) {
-            (Ok(()), Some(coupling)) => coupling.factored(envelope, vectors.factor),
-            (Ok(()), None) => true,
-            _ => false,
-        };
-        if let Err(failure) = &factored {
-            envelope.negative_direction(vectors.factor, failure, vectors.direction);
-            let square = dot(vectors.direction, vectors.direction);
-            if failure.pivot.is_finite() && square.is_finite() {
-                low = low.max(shift - failure.pivot / square);
-                have_direction = vectors.coupling.is_none();
+        let definite = match envelope.factor(matrix, sparse_norm, shift, allow, vectors.factor) {
+            Ok(factored) => match &mut vectors.coupling {
+                Some(coupling) => coupling.take(envelope, vectors.factor, factored).then_some(factored),
+                None => Some(factored),
+            },
+            Err(failure) => {
+                if allow == Allow::Definite {
+                    envelope.negative_direction(vectors.factor, &failure, vectors.direction);
+                    let square = dot(vectors.direction, vectors.direction);
+                    if failure.pivot.is_finite() && square.is_finite() {
+                        low = low.max(shift - failure.pivot / square);
+                        have_direction = true;
+                    }
+                }
+                None
             }
-        }
-        if !definite {
+        };
+        let Some(factored) = definite else {
             low = low.max(shift);
             high = high.max(low * 1.01 + 1e-300);
             shift = between(low, high, last_shift);
             continue;
-        }
-        vectors.newton(envelope);
+        };
+        vectors.newton(envelope, factored);
         let square = dot(vectors.step, vectors.step);
         let length = libm::sqrt(square);
         let predicted = 0.5 * (shift * square - dot(vectors.gradient, vectors.step));
@@ -154,7 +158,7 @@ pub(super) fn solve(
             low = low.max(shift);
         }
         best = Some(found);
-        let newton = shift + (square / vectors.steepness(envelope)) * ((length - radius) / radius);
+        let newton = shift + (square / vectors.steepness(envelope, factored)) * ((length - radius) / radius);
         shift = if newton > low && newton < high { newton } else { between(low, high, 0.0) };
         if !(high - low > 1e-14 * high) {
             break;
@@ -162,11 +166,11 @@ pub(super) fn solve(
     }
     // The interval closed: the last step that a factorisation gave is shortened to the ball where it is too long.
     let found = best?;
-    envelope.factor(matrix, sparse_norm, found.shift, vectors.factor).ok()?;
+    let factored = envelope.factor(matrix, sparse_norm, found.shift, allow, vectors.factor).ok()?;
     if let Some(coupling) = &mut vectors.coupling {
-        coupling.factored(envelope, vectors.factor);
+        coupling.take(envelope, vectors.factor, factored);
     }
-    vectors.newton(envelope);
+    vectors.newton(envelope, factored);
     if found.length > radius {
         let shrink = radius / found.length;
         vectors.step.iter_mut().for_each(|s| *s *= shrink);

@@ -4,7 +4,7 @@ use super::functions::Tables;
 use super::span::{COLUMNS, Condensed, Span, Weigh, condense};
 use crate::curve::fairness::{Density, Shape};
 use crate::curve::model::Model;
-use crate::solve::{Envelope, Indices};
+use crate::solve::{Allow, Envelope, Indices, dot};
 use nalgebra::SVector;
 
 /// The most unknowns of a joint: direction and curvature on either side.
@@ -307,21 +307,27 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
                 let Some(found) = self.linearise(weigh, curvature, effort.exact) else { continue };
                 let envelope = Envelope { first: &self.row_first, start: &self.row_start };
                 let norm = envelope.norm(self.matrix, &mut self.factor[..unknowns]);
-                if envelope.factor(self.matrix, norm, 0.0, self.factor).is_ok() {
-                    let solve = |step: &mut [f64], gradient: &[f64]| {
-                        for (s, g) in step.iter_mut().zip(gradient) {
-                            *s = -g;
-                        }
-                        envelope.forward(self.factor, step);
-                        envelope.backward(self.factor, step, unknowns);
-                    };
-                    solve(self.step, self.gradient);
-                    if !matches!(law, Law::Plain) {
-                        solve(self.pulled, self.length_gradient);
+                // Longer than it would like to be, a curve is under negative tension: it is held by its length.
+                let allow = if matches!(law, Law::Length(_)) { Allow::OneNegative } else { Allow::Definite };
+                let Ok(factored) = envelope.factor(self.matrix, norm, 0.0, allow, self.factor) else {
+                    continue;
+                };
+                let solve = |step: &mut [f64], gradient: &[f64]| {
+                    for (s, g) in step.iter_mut().zip(gradient) {
+                        *s = -g;
                     }
-                    gap = Some(found);
-                    break;
+                    envelope.solve(self.factor, factored, step);
+                };
+                if !matches!(law, Law::Plain) {
+                    solve(self.pulled, self.length_gradient);
+                    let along = dot(self.pulled, self.length_gradient);
+                    if factored.negative.is_some() && !(along > 0.0) {
+                        continue;
+                    }
                 }
+                solve(self.step, self.gradient);
+                gap = Some(found);
+                break;
             }
             let Some(gap) = gap else { return Ended::Failed };
             let change = self.tension_change(weigh, law);
