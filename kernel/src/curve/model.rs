@@ -725,6 +725,10 @@ where
         self.functional.length_power() != 0 || self.goal.is_some()
     }
 
+    fn is_cautious(&self) -> bool {
+        self.goal.is_some_and(|goal| goal.multiplier == 0.0)
+    }
+
     fn couple(&self, sums: [f64; 2]) -> Coupled {
         let [own, length] = sums;
         if let Some(Goal { target, multiplier, penalty }) = self.goal {

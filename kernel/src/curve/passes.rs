@@ -22,15 +22,17 @@ const LOOSE: f64 = 1e-9;
 const WORKING_DECREASE: f64 = 1e-7;
 
 /// The penalties, in units of the functional, with which a given length is approached, one after the other.
-const PENALTIES: [f64; 3] = [1e2, 1e4, 1e8];
+const PENALTIES: [f64; 3] = [1e2, 1e4, 1e6];
 /// With a given length the functional is minimised to this fraction: what is left lies along the length.
 const LENGTH_DECREASE: f64 = 1e-10;
 const ROUGH_LENGTH_DECREASE: f64 = 1e-6;
 /// How many times further than by its penalty a tension is changed at once.
 const MOST_FURTHER: f64 = 1e3;
-/// A curve whose length is nearly met gets few and short steps: the tension is corrected after them.
+/// A curve whose length will not be met, because it has shallow valleys to follow, gets few and short steps under a stiffer
+/// penalty; the tension is corrected after them.
 const FEW: usize = 4;
 const SHORT: f64 = 1e-4;
+const STIFF_PENALTY: f64 = 1e8;
 /// A length is met to this fraction.
 const LENGTH_MET: f64 = 1e-10;
 /// Torsion is continuous to this fraction.
@@ -239,27 +241,25 @@ impl<'a> Passes<'a> {
         let mut corrections = 0;
         let mut stage = usize::from(self.multiplier != 0.0);
         let mut last: Option<[f64; 2]> = None;
-        let mut settled = false;
+        let mut stubborn = false;
         loop {
             let [value, _] = total(model, state);
             let unit = (value + 1e-3 * model.natural_cost) / (target * target);
-            let penalty = PENALTIES[stage] * unit;
+            let penalty = unit * if stubborn { STIFF_PENALTY } else { PENALTIES[stage] };
             model.goal = Some(Goal { target, multiplier: self.multiplier, penalty });
             let is_last = stage + 1 == PENALTIES.len();
             let decrease = if stage > 0 { LENGTH_DECREASE } else { ROUGH_LENGTH_DECREASE };
-            let before = self.iterations;
-            let (most, longest) = (self.most, if settled { SHORT } else { 1.0 });
-            if settled {
-                self.most = most.min(before + FEW);
+            let (most, longest) = (self.most, if stubborn { SHORT } else { 1.0 });
+            if stubborn {
+                self.most = most.min(self.iterations + FEW);
             }
             let mut outcome =
                 self.minimise(model, decrease.max(relative_decrease), [RELAXATION; 2], longest, state, work)?;
             self.most = most;
-            if settled && outcome.status == Status::IterationLimit && self.iterations < most {
+            model.goal = None;
+            if stubborn && outcome.status == Status::IterationLimit && self.iterations < most {
                 outcome.status = Status::Converged;
             }
-            settled = stage > 0;
-            model.goal = None;
             let length = total(model, state)[1];
             let off = length - target;
             corrections += 1;
@@ -274,6 +274,7 @@ impl<'a> Passes<'a> {
                 if (0.0..=MOST_FURTHER).contains(&(change / (penalty * off))) {
                     self.multiplier += change;
                 }
+                stubborn |= is_last && off.abs() > 0.1 * (last_length - target).abs();
             }
             last = Some([tension, length]);
             if stopped || (is_last && (met || corrections >= MOST_CORRECTIONS)) {

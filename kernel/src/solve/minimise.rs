@@ -1,6 +1,6 @@
 //! The iteration: linearise, step, try, accept or refuse, until nothing can be gained.
 
-use super::envelope::Envelope;
+use super::envelope::{Allow, Envelope};
 use super::executor::Executor;
 use super::ordering::order_blocks;
 use super::problem::{BlockList, Coupled, Problem, packed, packed_len};
@@ -207,10 +207,11 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                     ..
                 } = &mut self.work;
                 let envelope = Envelope { first: row_first, start: row_start };
+                let allow = if self.problem.is_cautious() { Allow::Definite } else { Allow::OneNegative };
                 let coupling = self
                     .problem
                     .is_coupled()
-                    .then(|| RankTwo::new([first, second], self.coupled.second, [one, other]));
+                    .then(|| RankTwo::new([first, second], self.coupled.second, [one, other], allow));
                 let mut vectors = Vectors { gradient, step, scratch, direction, factor, coupling };
                 trust_region::solve(&envelope, matrix, &mut vectors, radius.0, shift)
             };

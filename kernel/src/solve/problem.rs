@@ -91,6 +91,12 @@ pub trait Problem: Sync {
         false
     }
 
+    /// Whether a coupled problem is far from what it is to become: the sparse matrix by itself must be positive definite
+    /// then, which makes for smaller steps. Otherwise what the coupling adds may make up for a negative eigenvalue.
+    fn is_cautious(&self) -> bool {
+        false
+    }
+
     /// The objective from the two sums. The matrix of all elements together is then the sparse one that
     /// [`Problem::linearise_sums`] gives plus one of rank two, which the solver treats exactly.
     fn couple(&self, sums: [f64; 2]) -> Coupled {

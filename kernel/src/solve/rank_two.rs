@@ -14,20 +14,27 @@
 //! then. The whole is positive definite all the same if the part of `C` with its positive eigenvalue makes up for that
 //! (its determinant with `S` changes sign) and the rest does not undo it.
 
-use super::envelope::{Envelope, Factored, dot};
+use super::envelope::{Allow, Envelope, Factored, dot};
 
 /// The gradients, the matrix between them, and room for `Y`.
 pub(super) struct RankTwo<'a> {
     pub(super) gradients: [&'a [f64]; 2],
     pub(super) second: [[f64; 2]; 2],
     pub(super) solved: [&'a mut [f64]; 2],
+    /// Which sparse matrices it may be added to.
+    pub(super) allow: Allow,
     /// `I + C M`, inverted, times `C`.
     middle: [[f64; 2]; 2],
 }
 
 impl<'a> RankTwo<'a> {
-    pub(super) fn new(gradients: [&'a [f64]; 2], second: [[f64; 2]; 2], solved: [&'a mut [f64]; 2]) -> Self {
-        Self { gradients, second, solved, middle: [[0.0; 2]; 2] }
+    pub(super) fn new(
+        gradients: [&'a [f64]; 2],
+        second: [[f64; 2]; 2],
+        solved: [&'a mut [f64]; 2],
+        allow: Allow,
+    ) -> Self {
+        Self { gradients, second, solved, allow, middle: [[0.0; 2]; 2] }
     }
 
     /// A bound on the size of its eigenvalues.

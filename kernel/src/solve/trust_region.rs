@@ -108,8 +108,7 @@ pub(super) fn solve(
         norm += coupling.norm();
     }
     let gradient_length = libm::sqrt(dot(vectors.gradient, vectors.gradient));
-    // What is added may make up for a negative eigenvalue.
-    let allow = if vectors.coupling.is_some() { Allow::OneNegative } else { Allow::Definite };
+    let allow = vectors.coupling.as_ref().map_or(Allow::Definite, |coupling| coupling.allow);
     let (mut low, mut high) = (0.0f64, gradient_length / radius + norm);
     if !high.is_finite() {
         return None;
@@ -129,7 +128,7 @@ pub(super) fn solve(
                     let square = dot(vectors.direction, vectors.direction);
                     if failure.pivot.is_finite() && square.is_finite() {
                         low = low.max(shift - failure.pivot / square);
-                        have_direction = true;
+                        have_direction = vectors.coupling.is_none();
                     }
                 }
                 None
