@@ -241,9 +241,11 @@ pub struct minvar_report {
     /// The estimated distance from the true minimum, where a tolerance was asked for, else 0; infinite where there is no
     /// estimate.
     pub error: f64,
-    /// The largest gradient component, each times its unknown's natural size, as a fraction of the functional.
+    /// The largest gradient component, each times its unknown's natural size, as a fraction of the functional; infinite where
+    /// little was asked for (a relative_decrease above 1e-9) and no step of the elements was needed for it.
     pub gradient: f64,
-    /// The decrease that another Newton step would promise; infinite where the Hessian is not positive definite.
+    /// The decrease that another Newton step would promise; infinite where the Hessian is not positive definite. Where
+    /// no step was needed: an estimate of what the functional exceeds the true curve's by.
     pub decrement: f64,
 }
 

@@ -74,6 +74,25 @@ fn every_functional_reaches_its_true_curve() {
     }
 }
 
+/// Elements that are laid along the curve's direction as a function of arc length need no step of their own.
+#[test]
+fn points_asked_for_loosely_take_a_few_iterations_and_no_linearisation() {
+    for functional in [Functional::MVC, Functional::MEC, Functional::SI_MVC, Functional::SI_MEC] {
+        let solve = |relative_decrease| {
+            let options = Options { functional, relative_decrease, ..Options::DEFAULT };
+            let (report, _) = solve_curve(&woodford(), false, &options).expect("good data");
+            assert_eq!(report.status, Status::Converged, "{functional:?}");
+            report
+        };
+        let (loose, tight) = (solve(3e-6), solve(1e-12));
+        assert_eq!(loose.linearisations, 0, "{functional:?}");
+        assert!(loose.iterations <= 5, "{functional:?}: {}", loose.iterations);
+        assert!(loose.gradient == f64::INFINITY && loose.decrement <= 3e-6 * loose.value);
+        close(loose.value, tight.value, 3e-6, "functional");
+        assert!(loose.value >= tight.value);
+    }
+}
+
 #[test]
 fn a_scale_invariant_value_is_the_same_at_any_size() {
     let (unit, _) =

@@ -278,6 +278,23 @@ proptest! {
         commutes(&data, &Similarity { orthogonal: |v: Vector| [v[0], -v[1], v[2]], scale: 1.0, shift: ORIGIN }, 1e-6)?;
     }
 
+    /// Where little is asked for, elements that run along the curve's direction as a function of arc length are taken as they are,
+    /// by an estimate of what they exceed the minimum by.
+    #[test]
+    fn what_is_asked_for_loosely_is_as_near_as_asked(data in data(SMOOTH), digits in 4..9, functional in 0u32..4) {
+        let relative_decrease = 0.1f64.powi(digits);
+        let loose = Options { relative_decrease, functional: Functional(functional), ..Options::DEFAULT };
+        let (report, _) = data.solve(&loose);
+        prop_assert_eq!(report.status, Status::Converged);
+        if report.linearisations == 0 {
+            let (tight, _) = data.solve(&Options { relative_decrease: 1e-12, ..loose });
+            prop_assert_eq!(tight.status, Status::Converged);
+            let excess = (report.value - tight.value) / tight.value;
+            prop_assert!(excess <= relative_decrease, "{excess:e}");
+            prop_assert!(report.decrement <= relative_decrease * report.value);
+        }
+    }
+
     /// A quintic's minima come in pairs that differ in which end it runs through faster; where both are as good as equal, the
     /// reversed data may find the other one.
     #[test]

@@ -117,6 +117,8 @@ pub(super) struct Model<'a, const D: usize> {
     /// Whether a curve that turns by more than a right angle between two points of the rule is outside the domain:
     /// it would have a cusp there that the rule does not see.
     pub(super) guarded: bool,
+    /// Whether the elements have been laid along a curve that is known: no others are much better.
+    pub(super) fitted: bool,
     /// The natural size of the integral, see [`Problem::natural_cost`].
     pub(super) natural_cost: f64,
     /// Half the sum of all speeds at the start: about the curve's length.
@@ -881,7 +883,7 @@ where
     fn variants(&self) -> usize {
         let few = matches!(self.division, Division::Even(1..=3));
         let explores = self.space.is_none_or(|space| space.explores);
-        if self.gauge == 0.0 && few && explores { SKEWS.len() } else { 0 }
+        if self.gauge == 0.0 && few && explores && !self.fitted { SKEWS.len() } else { 0 }
     }
 
     fn vary(&self, element: usize, variant: usize, state: &mut [f64]) {
@@ -951,7 +953,7 @@ fn plain_sums<const D: usize>(by_rows: &RowDerivatives<D>, first: [f64; 2]) -> [
 }
 
 /// The logarithms of the speed ratio between an element's first end and its middle in the starts that are tried.
-const SKEWS: [f64; 2] = [0.15, -0.15];
+const SKEWS: [f64; 3] = [0.15, -0.15, 0.0];
 /// The least speed at an end of an element, as a fraction of its chord: a quintic that nearly stops there is a bend of the
 /// parametrisation, not of the curve.
 const LEAST_SPEED: f64 = 0.02;

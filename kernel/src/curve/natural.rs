@@ -19,6 +19,7 @@
 //! tension that belongs to them, which is an unknown more.
 
 mod chain;
+mod fit;
 mod functions;
 mod span;
 mod trace;
@@ -29,11 +30,14 @@ use super::fairness::{Density, Shape};
 use super::joint::Given;
 use super::model::{Division, Model};
 use chain::{Chain, Effort, Ended, Law};
+use fit::{Known, fit};
 use functions::COARSE;
 use span::Weigh;
 
 /// For start values.
 const ROUGH: Effort = Effort { settled: 3e-3, iterations: 12, exact: false };
+/// The elements' part of what is left over may be this share of all.
+const SHARE: f64 = 0.03;
 /// The memory that [`improve`] needs for so many joints and spans.
 pub(super) const fn memory_len(joints: usize, spans: usize, closed: bool) -> usize {
     chain::memory_len(6, joints, spans, closed)
@@ -63,6 +67,11 @@ fn task<const D: usize>(model: &Model<'_, D>, length: Option<f64>) -> (Weigh, La
 pub(super) struct Improved {
     /// The tension that meets a given length; 0 without one.
     pub(super) tension: f64,
+    /// The weighed integrals of the curve that the elements run along, and by how much, about, they exceed the least there is.
+    pub(super) integral: f64,
+    pub(super) left_out: f64,
+    /// By how much those of the elements exceed the curve's, about.
+    pub(super) misfit: f64,
     /// Whether the curve grew on and on: it may have no minimum.
     pub(super) grows: bool,
 }
@@ -71,12 +80,13 @@ pub(super) struct Improved {
 /// curvatures at the joints, and the speeds. Returns nothing, and leaves the state untouched, where it does not apply or does
 /// not settle.
 ///
-/// `memory` holds [`memory_len`] numbers.
+/// `enough` is the fraction of the functional by which it may exceed its minimum; `memory` holds [`memory_len`] numbers.
 pub(super) fn improve<const D: usize>(
     model: &Model<'_, D>,
     length: Option<f64>,
     bent: Option<usize>,
     state: &mut [f64],
+    enough: f64,
     memory: &mut [f64],
     watch: &mut chain::Watch<'_>,
 ) -> Option<Improved>
@@ -87,12 +97,15 @@ where
         return None;
     }
     let mut chain = Chain::of(&COARSE, model, state, bent, memory)?;
-    let (mut weigh, law) = task(model, length);
+    let (asked, law) = task(model, length);
+    let mut weigh = asked;
     // A curve that grows may have no minimum: what follows goes on from here, and finds out.
     let ended = chain.settle(&mut weigh, law, &ROUGH, watch);
     if matches!(ended, Ended::Failed | Ended::Stopped) {
         return None;
     }
+    let mut misfit = 0.0;
+    let enough = SHARE * enough;
     for index in 0..model.element_count() {
         let span = chain.span(index);
         let mut ends = [model.end(index, 0, state), model.end(index, 1, state)];
@@ -108,10 +121,15 @@ where
             this.curvature[0] = span.shared[2 * end + 1];
         }
         super::start::give_speeds(&mut ends, span.length(), span.turning(&COARSE));
+        let direction = span.coefficients();
+        let known = Known { direction: &direction, length: span.length(), from: 0.0, to: 1.0 };
+        let varies = weigh.bend > 0.0;
+        misfit += if varies { weigh.bend } else { weigh.slope } * fit(&mut ends, &known, varies, enough);
         for (end, value) in ends.iter().enumerate() {
             model.set_end(index, end, value, state);
         }
     }
     let tension = if length.is_some() { weigh.length } else { 0.0 };
-    Some(Improved { tension, grows: ended == Ended::Grown })
+    let (integral, left_out) = (chain.integral(&asked), chain.left_out());
+    Some(Improved { tension, grows: ended == Ended::Grown, integral, left_out, misfit })
 }

@@ -2,6 +2,7 @@
 
 use super::fairness::{Density, Shape};
 use super::model::{Goal, Model};
+use super::natural::Improved;
 use super::space::Space;
 use super::torsion::SpaceFunctional;
 use crate::basis::quadrature::MAX_POINTS;
@@ -11,13 +12,15 @@ use crate::solve::{
 
 /// The first pass ends when a step promises to lower the functional by less than this fraction.
 const SHAPING_DECREASE: f64 = 1e-1;
+/// An estimate of what is left to gain is trusted to this factor: in eight thousand random problems it was never wrong by more.
+const SURE: f64 = 3.0;
 /// Steps of each element by itself between two of the whole curve.
 const RELAXATION: usize = 10;
 
 /// Points of the rule that most of the work is done with.
 pub(super) const WORKING_POINTS: usize = 16;
 /// A functional that is wanted no better than to this fraction is not minimised with a finer rule if that agrees.
-const LOOSE: f64 = 1e-9;
+pub(super) const LOOSE: f64 = 1e-9;
 /// With few points a functional is minimised to this fraction before it is with many.
 const WORKING_DECREASE: f64 = 1e-7;
 
@@ -57,6 +60,8 @@ pub(super) struct Passes<'a> {
     /// Whether the observer asked to stop.
     cancelled: bool,
     hurries: bool,
+    /// Whether elements that have been laid along a known curve are taken as they are as far as possible.
+    pub(super) hastens: bool,
 }
 
 impl<'a> Passes<'a> {
@@ -78,6 +83,7 @@ impl<'a> Passes<'a> {
             multiplier: 0.0,
             cancelled: false,
             hurries: false,
+            hastens: false,
         }
     }
 
@@ -235,7 +241,8 @@ impl<'a> Passes<'a> {
         Shape<D>: Density<D>,
     {
         let Some(target) = self.length else {
-            return self.minimise(model, relative_decrease, [RELAXATION; 2], 1.0, state, work);
+            let first = if self.hastens { 0 } else { RELAXATION };
+            return self.minimise(model, relative_decrease, [first, RELAXATION], 1.0, state, work);
         };
         // The method of multipliers: value + multiplier (L − target) + ½ penalty (L − target)².
         let mut corrections = 0;
@@ -285,6 +292,31 @@ impl<'a> Passes<'a> {
         }
     }
 
+    /// Takes elements that run along a known curve as they are, if what they exceed the least integral by is no more than is
+    /// asked for: what the curve does, and what they exceed it by, as measured and as estimated.
+    pub(super) fn accept<const D: usize>(
+        &self,
+        model: &Model<'_, D>,
+        improved: &Improved,
+        relative_decrease: f64,
+        state: &[f64],
+    ) -> Option<Outcome>
+    where
+        Shape<D>: Density<D>,
+    {
+        let sums = total(model, state);
+        let value = model.couple(sums).value;
+        let excess = improved.left_out + improved.misfit.max(sums[0] - improved.integral);
+        (SURE * excess <= relative_decrease * sums[0]).then_some(Outcome {
+            status: Status::Converged,
+            iterations: 0,
+            linearisations: 0,
+            value,
+            gradient: f64::INFINITY,
+            decrement: excess / sums[0] * value,
+        })
+    }
+
     /// Relaxes every element by itself and looks at what there is, without a step of the whole.
     pub(super) fn look<const D: usize>(
         &mut self,
@@ -324,6 +356,7 @@ impl<'a> Passes<'a> {
             max_iterations: if self.cancelled { 0 } else { self.most - self.iterations.min(self.most) },
             relative_decrease,
             relaxation,
+            spares_relaxation: self.hastens,
             first_relaxation,
             first_radius,
         };

@@ -12,7 +12,7 @@ use super::joint::{Curve, Given};
 use super::model::{Division, Goal, Model};
 use super::natural;
 use super::options::Options;
-use super::passes::{self, Passes};
+use super::passes::{self, LOOSE, Passes};
 use super::placement::{Place, Placement};
 use super::space::Space;
 use super::start::{Start, adopt, refine};
@@ -47,10 +47,11 @@ pub struct Report {
     /// The bending energy `E = ∫ κ² ds`.
     pub bending: f64,
     /// The largest component of the functional's gradient by the unknowns, each times the unknown's natural size,
-    /// as a fraction of the functional.
+    /// as a fraction of the functional; infinite where little was asked for (a `relative_decrease` above 1e-9) and no step of
+    /// the elements was needed for it.
     pub gradient: f64,
     /// The decrease of the functional that another Newton step would promise; infinite where the Hessian is not
-    /// positive definite.
+    /// positive definite. Where no step was needed: an estimate of what the functional exceeds the true curve's by.
     pub decrement: f64,
 }
 
@@ -312,6 +313,7 @@ fn model<'a, const D: usize>(curve: &Curve<'a>, options: &Options, place: &Place
         contacts: &[],
         gauge: 0.0,
         guarded: true,
+        fitted: false,
         natural_cost: 0.0,
         start_length: 0.0,
     }
@@ -424,9 +426,10 @@ where
         model.start_length = model.rough_length(state);
         take_scale(&mut model, state);
         if warm {
-            let improved = natural::improve(&model, length, None, state, work, &mut |sums, step| {
-                passes.note(model.value_of(sums), step)
-            });
+            let improved =
+                natural::improve(&model, length, None, state, decrease, work, &mut |sums, step| {
+                    passes.note(model.value_of(sums), step)
+                });
             passes.multiplier = improved.map_or(0.0, |improved| improved.tension);
         }
         if let Some(reference) = &curve.reference {
@@ -467,14 +470,32 @@ where
     let improved = if options.continuation > 0 {
         None
     } else {
-        natural::improve(&coarse, length, begin.bent(curve), coarse_state, work, &mut |sums, step| {
-            passes.note(coarse.value_of(sums), step)
-        })
+        natural::improve(
+            &coarse,
+            length,
+            begin.bent(curve),
+            coarse_state,
+            decrease,
+            work,
+            &mut |sums, step| passes.note(coarse.value_of(sums), step),
+        )
     };
     passes.multiplier = improved.map_or(0.0, |improved| improved.tension);
+    passes.hastens = improved.is_some() && decrease > LOOSE;
     if improved.is_some_and(|improved| improved.grows) {
         // Only whether it goes on growing is left to find out.
         passes.hurry(MOST_GROWING);
+    }
+    coarse.fitted =
+        decrease > LOOSE && improved.is_some_and(|it| it.left_out + it.misfit <= FITTED * it.integral);
+    if let Some(improved) = improved
+        && length.is_none()
+        && decrease > LOOSE
+        && options.elements_per_span == 1
+        && curve.obstacles.is_empty()
+        && let Some(outcome) = passes.accept(&coarse, &improved, decrease, coarse_state)
+    {
+        return Ok(hand_over(&coarse, &outcome, &passes, coarse_state, elements, options));
     }
     let parts = options.elements_per_span as usize;
     let aim =
@@ -690,6 +711,8 @@ fn functional_scale(options: &Options, unit: f64) -> f64 {
     }
 }
 
+/// Elements that exceed the least integral by less than this part of it have no better ones beside them.
+const FITTED: f64 = 1e-6;
 /// With one element a span on the way to more, a functional to this fraction is enough.
 const COARSE_DECREASE: f64 = 1e-7;
 /// By how much the first tension of a continuation outweighs the functional.

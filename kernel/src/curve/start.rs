@@ -75,6 +75,11 @@ fn frame_of<const D: usize>(tangent: &SVector<f64, D>, curvature: &SVector<f64, 
     frame
 }
 
+/// A span whose tangents turn by less than this together against the chord, and whose curvatures are less than this over it, has
+/// neither cusp nor loop.
+const GENTLE_TURN: f64 = 1.5;
+const GENTLE_BEND: f64 = 4.0;
+
 pub(super) struct Start<'m, 'a, const D: usize> {
     pub(super) model: &'m Model<'a, D>,
     pub(super) place: &'m Placement<D>,
@@ -334,6 +339,12 @@ where
         let turn = (angle(&ends[0].frame[0]) + angle(&ends[1].frame[0])).min(MOST_TURN);
         let half = 0.5 * turn;
         let length = if half > 1e-4 { size * half / libm::sin(half) } else { size };
+        let bend =
+            libm::sqrt(ends.iter().map(|end| end.curvature_vector().norm_squared()).fold(0.0, f64::max));
+        if turn < GENTLE_TURN && bend * size < GENTLE_BEND {
+            give_speeds(ends, length, turn);
+            return;
+        }
         let mut best = (f64::INFINITY, 1.0);
         for factor in SPEED_FACTORS {
             give_speeds(ends, length * factor, turn);

@@ -22,6 +22,8 @@ pub struct Settings {
     /// How many steps each element may take in the blocks that it shares with none, after every step of the whole; 0
     /// for none.
     pub relaxation: usize,
+    /// Whether a step of the whole that keeps its promise as it is goes without.
+    pub spares_relaxation: bool,
     /// How many such steps each element takes before the first step.
     pub first_relaxation: usize,
     /// The first radius of the trust region, in natural sizes an element.
@@ -34,8 +36,8 @@ impl Settings {
         max_iterations: 200,
         relative_decrease: 0.0,
         relaxation: 0,
+        spares_relaxation: false,
         first_relaxation: 0,
-
         first_radius: 1.0,
     };
 }
@@ -99,6 +101,8 @@ const ZERO_COST: f64 = 1e-3;
 /// A cost below this part of what is natural is rounding: no step can be judged any more.
 pub(super) const NO_COST: f64 = 1e-20;
 
+/// A step that brings this part of what it promised need not be helped.
+const KEPT: f64 = 0.9;
 /// Before the first step elements are relaxed until one promises less than this part of the tolerance.
 const ENOUGH: f64 = 0.1;
 /// How often other starts of the elements' own unknowns may lead to a better minimum.
@@ -259,7 +263,8 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             }
             shift = step.shift;
 
-            let tried = self.try_step(state, 1e-3 * step.predicted / self.problem.elements() as f64);
+            let promise = settings.spares_relaxation.then_some(value - KEPT * step.predicted);
+            let tried = self.try_step(state, promise, step.predicted);
             let actual = value - tried.value;
             let slack = if step.predicted <= 1e3 * floor { floor } else { 0.0 };
             let ratio = tried.value.is_finite().then(|| (actual + slack) / (step.predicted + slack));
@@ -306,7 +311,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     /// Looks for better minima of the elements' own unknowns beside the present ones; moves there if that lowers the
     /// cost.
     fn hop(&mut self, state: &mut [f64], value: f64) -> bool {
-        self.linearisations += relax::explore(self.problem, &mut self.work, EXPLORATION, state);
+        self.linearisations += relax::explore(self.problem, &mut self.work, EXPLORATION, value, state);
         let Workspace { trial, best, .. } = &mut self.work;
         trial.copy_from_slice(best);
         let found = self.cost();
@@ -318,13 +323,21 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         better
     }
 
-    /// Takes the step into the trial state and relaxes it there; returns the objective.
-    fn try_step(&mut self, state: &[f64], enough: f64) -> Coupled {
+    /// Takes the step into the trial state, and relaxes it there unless it keeps a promise as it is; returns the objective.
+    fn try_step(&mut self, state: &[f64], promise: Option<f64>, predicted: f64) -> Coupled {
         let Workspace { trial, step, sizes, offset, scratch, .. } = &mut self.work;
         move_by(self.problem, offset, sizes, step, scratch, state, trial);
-        if self.relaxation > 0 {
-            self.linearisations += relax::relax(self.problem, &mut self.work, self.relaxation, enough);
+        if self.relaxation == 0 {
+            return self.cost();
         }
+        if let Some(promise) = promise {
+            let tried = self.cost();
+            if tried.value <= promise {
+                return tried;
+            }
+        }
+        let enough = 1e-3 * predicted / self.problem.elements() as f64;
+        self.linearisations += relax::relax(self.problem, &mut self.work, self.relaxation, enough);
         self.cost()
     }
 

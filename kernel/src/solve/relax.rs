@@ -44,23 +44,26 @@ fn totals<P: Problem + ?Sized>(problem: &P, state: &[f64]) -> [f64; 2] {
     totals
 }
 
-/// Relaxes every element of a state from each of its starts, and keeps the best for each in `work.best`. Returns how
+/// Relaxes every element of a state, with this objective, from each of its starts, and keeps the best for each in `work.best`. Returns how
 /// often an element was linearised.
 pub(super) fn explore<P: Problem + ?Sized>(
     problem: &P,
     work: &mut Workspace<'_>,
     steps: usize,
+    value: f64,
     state: &[f64],
 ) -> usize {
+    // What is not enough to be preferred need not be found to more digits.
+    let enough = 0.1 * BETTER * value.abs() / problem.elements().max(1) as f64;
     work.trial.copy_from_slice(state);
-    let mut linearisations = relax(problem, work, steps, 0.0);
+    let mut linearisations = relax(problem, work, steps, enough);
     work.best.copy_from_slice(work.trial);
     for variant in 0..problem.variants() {
         work.trial.copy_from_slice(state);
         for element in 0..problem.elements() {
             problem.vary(element, variant, work.trial);
         }
-        linearisations += relax(problem, work, steps, 0.0);
+        linearisations += relax(problem, work, steps, enough);
         let weights = problem.couple(totals(problem, work.best)).first;
         for element in 0..problem.elements() {
             // Elements share none of what was changed: each is chosen by itself.

@@ -73,6 +73,8 @@ pub(super) struct Chain<'w, const N: usize, const C: usize> {
     factor: &'w mut [f64],
     /// `∫ θ''² ds`, `∫ θ'² ds` and the length at the last linearisation.
     sums: [f64; 3],
+    /// By how much the functional would sink, about, with more functions.
+    left_out: f64,
 }
 
 /// What of a side of a joint is an unknown: its place among the joint's unknowns.
@@ -237,6 +239,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
             matrix,
             factor,
             sums,
+            left_out: 0.0,
         })
     }
 
@@ -249,6 +252,17 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
         self.spans[index * stride(N) + 2 * end] >= 0.0
     }
 
+    /// The weighed integrals.
+    pub(super) fn integral(&self, weigh: &Weigh) -> f64 {
+        let spans = self.spans.chunks_exact(stride(N));
+        spans.map(|memory| Span::<N>::load(&memory[4..]).integral(self.tables, weigh)).sum()
+    }
+
+    /// By how much the functional would sink, about, with more functions.
+    pub(super) fn left_out(&self) -> f64 {
+        self.left_out
+    }
+
     pub(super) fn length(&self) -> f64 {
         self.spans.chunks_exact(stride(N)).map(|memory| Span::<N>::load(&memory[4..]).length()).sum()
     }
@@ -259,17 +273,19 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
         self.length_gradient.fill(0.0);
         self.matrix.fill(0.0);
         self.sums = [0.0; 3];
+        self.left_out = 0.0;
         let envelope = Envelope { first: &self.row_first, start: &self.row_start };
         let mut gap = 0.0f64;
         for memory in self.spans.chunks_exact_mut(stride(N)) {
             let (places, rest) = memory.split_at_mut(4);
             let (values, follow) = rest.split_at_mut(Span::<N>::LEN);
-            let Condensed { gradient, length_gradient, hessian, follow: found, gap: own_gap, sums } =
+            let Condensed { gradient, length_gradient, hessian, follow: found, gap: own_gap, sums, left_out } =
                 condense(self.tables, &Span::load(values), weigh, curvature, exact)?;
             for (to, row) in follow.chunks_exact_mut(COLUMNS).zip(&found) {
                 to.copy_from_slice(row);
             }
             gap = gap.max(own_gap);
+            self.left_out += left_out;
             for k in 0..3 {
                 self.sums[k] += sums[k];
             }

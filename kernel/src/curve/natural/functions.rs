@@ -45,6 +45,32 @@ pub(super) const fn functions<const N: usize>(u: f64) -> [[f64; N]; 3] {
     out
 }
 
+/// The first three derivatives of the direction with these coefficients.
+#[inline(always)]
+pub(super) fn slopes<const N: usize>(q: &[f64; N], u: Lanes) -> [Lanes; 3] {
+    let one = Lanes::ONE;
+    let (v, m) = (one - u, u * 2.0 - one);
+    let (uv, across) = (u * v, q[2] - q[0]);
+    let first = uv * (6.0 * across) + v * (one - u * 3.0) * q[1] + u * (u * 3.0 - one * 2.0) * q[3];
+    let second = m * (-6.0 * across) + (u * 6.0 - one * 4.0) * q[1] + (u * 6.0 - one * 2.0) * q[3];
+    let third = one * (6.0 * (q[1] + q[3]) - 12.0 * across);
+    let mut out = [first, second, third];
+    // P_{n−1}, P_n and their derivatives by m, from n = 2 on.
+    let (mut before, mut here) = (m, m * m * 1.5 - one * 0.5);
+    let (mut slope_before, mut slope_here) = (one, m * 3.0);
+    for i in 4..N {
+        let n = (i - 2) as f64;
+        let next = (m * here * (2.0 * n + 1.0) - before * n) * (1.0 / (n + 1.0));
+        out[0] += (next - before) * (0.5 * q[i] / (2.0 * n + 1.0));
+        out[1] += here * q[i];
+        out[2] += slope_here * (2.0 * q[i]);
+        let slope_next = slope_before + here * (2.0 * n + 1.0);
+        (before, here) = (here, next);
+        (slope_before, slope_here) = (slope_here, slope_next);
+    }
+    out
+}
+
 /// The first `N` functions at `C` pairs of points.
 pub(super) struct Tables<const N: usize, const C: usize> {
     pub(super) weight: [Lanes; C],
@@ -52,7 +78,18 @@ pub(super) struct Tables<const N: usize, const C: usize> {
     /// `∫ ψᵢ'' ψⱼ''` and `∫ ψᵢ' ψⱼ'`.
     pub(super) bend: [[f64; N]; N],
     pub(super) slope: [[f64; N]; N],
+    /// The two functions after those.
+    pub(super) beyond: [[Lanes; BEYOND]; C],
+    /// Their `∫ ψ''²`, `∫ ψ'²`, and `∫ ψ' ψⱼ'`.
+    pub(super) beyond_bend: [f64; BEYOND],
+    pub(super) beyond_own: [f64; BEYOND],
+    pub(super) beyond_slope: [[f64; N]; BEYOND],
 }
+
+/// How many functions more are looked at to tell what is left out.
+pub(super) const BEYOND: usize = 2;
+/// The most functions that are tabulated, with those beyond.
+const MOST: usize = FINE_FUNCTIONS + BEYOND;
 
 impl<const N: usize, const C: usize> Tables<N, C> {
     pub(super) const fn new() -> Self {
@@ -61,12 +98,16 @@ impl<const N: usize, const C: usize> Tables<N, C> {
             at: [[Lanes::ZERO; N]; C],
             bend: [[0.0; N]; N],
             slope: [[0.0; N]; N],
+            beyond: [[Lanes::ZERO; BEYOND]; C],
+            beyond_bend: [0.0; BEYOND],
+            beyond_own: [0.0; BEYOND],
+            beyond_slope: [[0.0; N]; BEYOND],
         };
         if let Some(rule) = legendre(WIDTH * C) {
             let mut k = 0;
             while k < WIDTH * C {
                 let (u, w) = (rule.nodes[k], rule.weights[k]);
-                let f = functions::<N>(u);
+                let f = functions::<MOST>(u);
                 out.weight[k / WIDTH].0[k % WIDTH] = w;
                 let mut i = 0;
                 while i < N {
@@ -78,6 +119,19 @@ impl<const N: usize, const C: usize> Tables<N, C> {
                         j += 1;
                     }
                     i += 1;
+                }
+                let mut b = 0;
+                while b < BEYOND {
+                    let (value, slope, bend) = (f[0][N + b], f[1][N + b], f[2][N + b]);
+                    out.beyond[k / WIDTH][b].0[k % WIDTH] = value;
+                    out.beyond_bend[b] += w * bend * bend;
+                    out.beyond_own[b] += w * slope * slope;
+                    let mut j = 0;
+                    while j < N {
+                        out.beyond_slope[b][j] += w * slope * f[1][j];
+                        j += 1;
+                    }
+                    b += 1;
                 }
                 k += 1;
             }

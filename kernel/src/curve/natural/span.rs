@@ -1,6 +1,6 @@
 //! A span by its direction: its share of the functional, condensed to what it shares with its neighbours.
 
-use super::functions::{Tables, rough_sine_cosine, sine_cosine};
+use super::functions::{BEYOND, Tables, rough_sine_cosine, sine_cosine};
 use crate::basis::lanes::Lanes;
 
 /// A span: its chord's length, the directions at its ends against the chord and the curvatures there, `φ₀, κ₀, φ₁, κ₁`,
@@ -28,6 +28,8 @@ pub(super) struct Condensed<const N: usize> {
     pub(super) gap: f64,
     /// `∫ θ''² ds`, `∫ θ'² ds` and the length.
     pub(super) sums: [f64; 3],
+    /// By how much the functional would sink, about, with more functions.
+    pub(super) left_out: f64,
 }
 
 /// The weights of `∫ θ''² ds`, `∫ θ'² ds` and `L`.
@@ -118,6 +120,14 @@ impl<const N: usize> Span<N> {
     pub(super) fn turning<const C: usize>(&self, tables: &Tables<N, C>) -> f64 {
         let q = self.coefficients();
         libm::sqrt(inner(&q, &product(&tables.slope, &q)).max(0.0))
+    }
+
+    /// Its weighed integrals.
+    pub(super) fn integral<const C: usize>(&self, tables: &Tables<N, C>, weigh: &Weigh) -> f64 {
+        let (q, length) = (self.coefficients(), self.length());
+        let bends = inner(&q, &product(&tables.bend, &q)) / (length * length * length);
+        let slopes = inner(&q, &product(&tables.slope, &q)) / length;
+        weigh.bend * bends + weigh.slope * slopes + weigh.length * length
     }
 
     /// Closes the span for a start: bends it between its ends, as little as possible, until it runs along its chord. Where
@@ -299,6 +309,20 @@ pub(super) fn condense<const N: usize, const C: usize>(
     let (j_l, j_x) = (of_l + a * g[1] + b * g[3], g[4]);
     let mu = [-(d[1][1] * j_l - d[1][0] * j_x) / determinant, -(d[0][0] * j_x - d[0][1] * j_l) / determinant];
 
+    // The gradient by the next functions, and what a step along each of them by itself would gain.
+    let mut left_out = 0.0;
+    for b in 0..BEYOND {
+        let (mut sine, mut cosine) = (Lanes::ZERO, Lanes::ZERO);
+        for k in 0..C {
+            sine += sines[k] * tables.beyond[k][b];
+            cosine += cosines[k] * tables.beyond[k][b];
+        }
+        let own = 2.0 * slope * inner(&q, &tables.beyond_slope[b]);
+        let gradient = own + mu[0] * cosine.total() - mu[1] * sine.total();
+        let second = 2.0 * (bend * tables.beyond_bend[b] + slope * tables.beyond_own[b]);
+        left_out += gradient * gradient / (2.0 * second);
+    }
+
     // Second derivatives of the Lagrangian by q.
     let mut second = [[Lanes::ZERO; N]; N];
     for k in 0..C {
@@ -392,6 +416,7 @@ pub(super) fn condense<const N: usize, const C: usize>(
         follow: [[0.0; COLUMNS]; N],
         gap: gaps[0].abs() + gaps[1].abs(),
         sums: [bends * cube / (c * c * c), slopes * inverse / c, l * c],
+        left_out,
     };
     for f in 0..4 {
         let (mut slope, mut length) = (gradient[f], c * to_l[f]);
