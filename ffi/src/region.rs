@@ -28,12 +28,14 @@ pub extern "C" fn minvar_joint_held_at(place: minvar_point) -> minvar_joint {
 /// `joints`: the region's joints in order, `joint_count`, two or more; inner ones may be moved, added and removed. The first
 /// and the last are changed: what a joint's continuity makes common is fixed as the rest has it there, the position to the
 /// last bit, of a G1 joint the tangent too, of a G2 joint the curvature vector as well. What the continuity leaves
-/// independent stays as given, and so does a joint where an open curve ends: its own conditions hold. Torsion is not held.
+/// independent stays as given, and so does a joint where an open curve ends: its own conditions hold.
 ///
 /// Then the region is the open curve through these joints: minvar_curve_solve() computes it from its data,
-/// minvar_curve_update() from its old elements. The functional is the region's own; where the joints did not move, the
-/// region comes out as it was, but with a scale-invariant functional or a given length. If the number of elements stays,
-/// `elements + first` may receive the new ones, if the region does not run past the last.
+/// minvar_curve_update() from its old elements. If the number of elements stays, `elements + first` may receive the new
+/// ones, unless the region runs past the last. The functional is the region's own. For MINVAR_MVC and MINVAR_MEC, with a
+/// tension or a bending term or without, a region of a minimum whose joints did not move comes out as it was.
+/// Scale-invariant functionals and a given length look at the region's length alone, and the space functionals leave its
+/// torsion free at both ends: these move it.
 ///
 ///     minvar_region_hold(elements, 6, 0, 2, 2, joints, 3, &error);
 ///     const minvar_curve region = minvar_curve_through(joints, 3, 0);

@@ -441,7 +441,9 @@ fn a_space_curve_that_counts_torsion_joins_with_its_curvature() {
     let (_, elements) = solve_curve(&joints, false, &options).expect("good data");
     let (report, fresh) = updated(&cut(&elements, 1, 2), &mut joints[1..4].to_vec(), &options);
     assert!(!report.planar);
-    assert!(deviation(&fresh, &elements[1..3], 2) < 1e-2);
+    // Torsion, free at both ends, moves it a little.
+    let off = deviation(&fresh, &elements[1..3], 2);
+    assert!(off > 1e-6 && off < 1e-3, "{off}");
     let mut inner = [joints[1], moved(&joints[2], [0.05, 0.0, 0.05]), joints[3]];
     updated(&cut(&elements, 1, 2), &mut inner, &options);
 }

@@ -1,7 +1,7 @@
 //! A region of a solved curve, to be computed anew while the rest stays as it is (thesis 4.4, local control).
 //!
-//! What is a sum over the elements is least as a whole only if every part of it is least between its ends held as they
-//! are: a region whose joints did not move comes out as it was.
+//! A sum over elements that meet in position, tangent and curvature is least as a whole only if every part of it is least
+//! between its ends held as they are: a region whose joints did not move comes out as it was.
 
 use super::element::Element;
 use super::error::CurveError;
@@ -51,9 +51,9 @@ impl Joint {
 /// # Ok::<(), minvar::curve::CurveError>(())
 /// ```
 ///
-/// The functional is the region's own. For MVC, MEC and the space functionals, with a tension or a bending term or without,
-/// the whole curve's is the sum of both parts'; a scale-invariant functional and a given length are of the region alone,
-/// and move it even where its joints did not. Torsion is not held.
+/// The functional is the region's own. For MVC and MEC, with a tension or a bending term or without, a region of a minimum
+/// whose joints did not move comes out as it was. Scale-invariant functionals and a given length look at the region's length
+/// alone, and the space functionals leave its torsion free at both ends: these move it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region<'a> {
     /// The whole curve: its elements in order.
