@@ -84,12 +84,16 @@ typedef enum minvar_code {
     MINVAR_LENGTH_TOO_SHORT = 26,
     // The reference shape has not as many elements as the curve. `needed`, `given`.
     MINVAR_WRONG_ELEMENT_COUNT = 27,
-    // An element of the reference shape or of the start is not finite or has no direction at an end. `index`: the element.
+    // An element of the reference shape, of the start or beside a region is not finite or has no direction at an end.
+    // `index`: the element.
     MINVAR_BAD_REFERENCE = 28,
     // An obstacle has a number that is not finite, a negative clearance or an unknown side. `index`: the obstacle.
     MINVAR_BAD_OBSTACLE = 29,
     // Obstacles need a planar curve, without a tolerance, a reference shape, a given length or a warm start.
     MINVAR_OBSTACLES_NOT_POSSIBLE = 30,
+    // A region has no elements, or some that the curve has not. `index`: its first element; `needed`: how many it has;
+    // `given`: how many the curve has.
+    MINVAR_BAD_REGION = 31,
     // There are no elements.
     MINVAR_NO_ELEMENTS = 40,
     // A number of an element is NaN, infinite or (in paths) beyond 1e100. `index`: the element.
@@ -724,6 +728,45 @@ enum minvar_code minvar_closest_point(const struct minvar_element *elements,
                                       double z,
                                       struct minvar_point *point,
                                       struct minvar_error *error);
+
+// A G2 joint held at a place of a curve, as minvar_point_at() and its like find it: position, tangent and curvature fixed
+// as they are there. A curve that starts or ends with it joins that curve with G2 continuity, to rounding. This only
+// fills in a struct: its numbers are checked by the functions that take the joint.
+struct minvar_joint minvar_joint_held_at(struct minvar_point place);
+
+// Holds the ends of a region of a curve, which is to be computed anew while the rest stays as it is (thesis 4.4, local
+// control).
+//
+// The curve is a chain of `count` elements, which returns to its start if `closed` is not 0. The region is
+// `region_count` elements, 1 or more, from `first` on, from 0; of a closed curve they may run past the last element into the
+// first ones. Its ends may be joints of the curve or any other ends of elements.
+//
+// `joints`: the region's joints in order, `joint_count`, two or more; inner ones may be moved, added and removed. The first
+// and the last are changed: what a joint's continuity makes common is fixed as the rest has it there, the position to the
+// last bit, of a G1 joint the tangent too, of a G2 joint the curvature vector as well. What the continuity leaves
+// independent stays as given, and so does a joint where an open curve ends: its own conditions hold.
+//
+// Then the region is the open curve through these joints: minvar_curve_solve() computes it from its data,
+// minvar_curve_update() from its old elements. If the number of elements stays, `elements + first` may receive the new
+// ones, unless the region runs past the last. The functional is the region's own. For MINVAR_MVC and MINVAR_MEC, with a
+// tension or a bending term or without, a region of a minimum whose joints did not move comes out as it was.
+// Scale-invariant functionals and a given length look at the region's length alone, and the space functionals leave its
+// torsion free at both ends: these move it.
+//
+//     minvar_region_hold(elements, 6, 0, 2, 2, joints, 3, &error);
+//     const minvar_curve region = minvar_curve_through(joints, 3, 0);
+//     minvar_curve_update(&region, &options, workspace, workspace_len, NULL, NULL, elements + 2, 2, &report, &error);
+//
+// Errors: MINVAR_BAD_REGION, MINVAR_TOO_FEW_JOINTS, MINVAR_BAD_REFERENCE for an element of the rest that has no direction
+// where the region joins it. The joints are untouched then; all else about them is looked at when the curve is solved.
+enum minvar_code minvar_region_hold(const struct minvar_element *elements,
+                                    size_t count,
+                                    int32_t closed,
+                                    size_t first,
+                                    size_t region_count,
+                                    struct minvar_joint *joints,
+                                    size_t joint_count,
+                                    struct minvar_error *error);
 
 // Calls `visit` with the chords of a chain, each within `tolerance` (a length) of its part: as few as a greedy choice
 // makes. The first one begins where the chain does, at C(0) of element 0; every corner of the chain is the end of one.

@@ -224,6 +224,8 @@ public:
     [[nodiscard]] static Joint on_plane(const Vec &p, const Vec &n) {
         return Joint(minvar_joint_on_plane(at(p).data_, p[0], p[1], p[2], n[0], n[1], n[2]));
     }
+    /// A G2 joint held at a place of a curve: position, tangent and curvature fixed as they are there.
+    [[nodiscard]] static Joint held_at(const Point &place) { return Joint(minvar_joint_held_at(place)); }
     /// A G2 joint anywhere between its neighbours; tangent and curvature are free.
     [[nodiscard]] static Joint anywhere() { return at({}).position(Given::Free, {}); }
 
@@ -262,6 +264,7 @@ public:
     const minvar_joint &data() const noexcept { return data_; }
 
 private:
+    friend class Region;
     explicit Joint(const minvar_joint &data) : data_(data) {}
 
     static minvar_quantity quantity(Given given, const Vec &v) {
@@ -278,6 +281,65 @@ private:
     }
 
     minvar_joint data_;
+};
+
+/// A region of a solved curve, to be computed anew while the rest stays as it is (thesis 4.4, local control): `count`
+/// elements from `first` on, from 0; of a closed curve they may run past the last element into the first ones.
+///
+///     const Region region(curve, 2, 2);
+///     solver.update_from(region.elements(), region.hold({Joint::anywhere(), Joint::at({3, 2.7, 0}), Joint::anywhere()}));
+///     curve = region.replaced(solver.solution().elements);
+class Region {
+public:
+    /// Throws Error if the curve has no such region, or has no direction where the region joins the rest.
+    Region(std::vector<Element> curve, std::size_t first, std::size_t count, bool closed = false)
+        : curve_(std::move(curve)), first_(first), count_(count), closed_(closed) {
+        hold({Joint::anywhere(), Joint::anywhere()});
+    }
+
+    /// The region's joints as an open curve's: the first and the last held to the rest, as far as their continuity makes
+    /// things common; where the curve itself ends they stay as given. Inner joints may be moved, added and removed.
+    std::vector<Joint> hold(std::vector<Joint> joints) const {
+        detail::require_abi();
+        std::vector<minvar_joint> held;
+        for (const Joint &joint : joints) {
+            held.push_back(joint.data());
+        }
+        detail::call(minvar_region_hold, curve_.data(), curve_.size(), closed_ ? 1 : 0, first_, count_, held.data(),
+                     held.size());
+        joints.front() = Joint(held.front());
+        joints.back() = Joint(held.back());
+        return joints;
+    }
+
+    /// The region's elements in order.
+    std::vector<Element> elements() const {
+        std::vector<Element> result;
+        for (std::size_t i = 0; i < count_; ++i) {
+            result.push_back(curve_[(first_ + i) % curve_.size()]);
+        }
+        return result;
+    }
+
+    /// The whole curve with other elements for the region's, any number. It starts where it did, unless the region runs
+    /// past the last element: then it starts where the region ends.
+    std::vector<Element> replaced(const std::vector<Element> &fresh) const {
+        std::vector<Element> result;
+        for (std::size_t i = first_ + count_ > curve_.size() ? first_ + count_ - curve_.size() : 0; i < first_; ++i) {
+            result.push_back(curve_[i]);
+        }
+        result.insert(result.end(), fresh.begin(), fresh.end());
+        for (std::size_t i = first_ + count_; i < curve_.size(); ++i) {
+            result.push_back(curve_[i]);
+        }
+        return result;
+    }
+
+private:
+    std::vector<Element> curve_;
+    std::size_t first_;
+    std::size_t count_;
+    bool closed_;
 };
 
 /// The options of a curve, with the library's defaults. minvar.h says what each may be.
@@ -367,6 +429,20 @@ public:
                      detail::minvar_hpp_observe, &bridge, solution_.elements.data(), solution_.elements.size(),
                      &solution_.report);
         bridge.rethrow();
+        return solution_;
+    }
+
+    /// As update(), from elements that need not be this solver's: those of a file, or of a region. As many as the curve has.
+    const Solution &update_from(std::vector<Element> start, const std::vector<Joint> &joints, bool closed = false,
+                                const Options &options = {}, const Observer &observer = {}) {
+        solution_.elements.swap(start);
+        try {
+            update(joints, closed, options, observer);
+        } catch (const Error &) {
+            solution_.elements.swap(start);
+            throw;
+        }
+        solution_.elements.resize(solution_.report.elements);
         return solution_;
     }
 

@@ -57,12 +57,16 @@ pub enum minvar_code {
     MINVAR_LENGTH_TOO_SHORT = 26,
     /// The reference shape has not as many elements as the curve. `needed`, `given`.
     MINVAR_WRONG_ELEMENT_COUNT = 27,
-    /// An element of the reference shape or of the start is not finite or has no direction at an end. `index`: the element.
+    /// An element of the reference shape, of the start or beside a region is not finite or has no direction at an end.
+    /// `index`: the element.
     MINVAR_BAD_REFERENCE = 28,
     /// An obstacle has a number that is not finite, a negative clearance or an unknown side. `index`: the obstacle.
     MINVAR_BAD_OBSTACLE = 29,
     /// Obstacles need a planar curve, without a tolerance, a reference shape, a given length or a warm start.
     MINVAR_OBSTACLES_NOT_POSSIBLE = 30,
+    /// A region has no elements, or some that the curve has not. `index`: its first element; `needed`: how many it has;
+    /// `given`: how many the curve has.
+    MINVAR_BAD_REGION = 31,
     /// There are no elements.
     MINVAR_NO_ELEMENTS = 40,
     /// A number of an element is NaN, infinite or (in paths) beyond 1e100. `index`: the element.
@@ -284,6 +288,9 @@ impl From<&CurveError> for Verdict {
             }
             CurveError::BadObstacle { obstacle } => Self::at(MINVAR_BAD_OBSTACLE, obstacle),
             CurveError::ObstaclesNotPossible => Self::new(MINVAR_OBSTACLES_NOT_POSSIBLE),
+            CurveError::BadRegion { first, count, elements } => {
+                Self { index: first, ..Self::short(MINVAR_BAD_REGION, count, elements) }
+            }
             CurveError::BadElement { element } => Self::at(MINVAR_BAD_REFERENCE, element),
             CurveError::WorkspaceTooSmall { needed, given } => {
                 Self::short(MINVAR_WORKSPACE_TOO_SMALL, needed, given)

@@ -15,12 +15,14 @@ mod curve;
 mod layout;
 mod measure;
 mod raw;
+mod region;
 mod toolpath;
 
 pub use code::{minvar_code, minvar_error, minvar_status, minvar_status_sentence};
 pub use convert::*;
 pub use curve::*;
 pub use measure::*;
+pub use region::*;
 pub use toolpath::*;
 
 use core::ffi::c_char;

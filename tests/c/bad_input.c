@@ -625,6 +625,87 @@ static void path_functions(void) {
     WORKS(GCODE);
 }
 
+/* ---- regions ---- */
+
+static size_t region_first, region_count;
+static minvar_joint held_room[3];
+static minvar_joint *held = held_room;
+static size_t held_count = 3;
+static int32_t closed;
+
+#define HOLD minvar_region_hold(chain, count, closed, region_first, region_count, held, held_count, e)
+
+static void region_functions(void) {
+    /* The joints are given and changed: what is refused leaves them alone. */
+    watched_count = 0;
+    watch(held_room, sizeof held_room);
+    chain_reset();
+    region_first = region_count = 1;
+    ARRAY(minvar_element, chain, count, HOLD, "elements");
+    ARRAY(minvar_joint, held, held_count, HOLD, "joints");
+    for (held_count = 0; held_count < 2; held_count++) {
+        REFUSED(HOLD, MINVAR_TOO_FEW_JOINTS, "two joints");
+        CHECK(last.needed == 2 && last.given == held_count);
+    }
+    held_count = 3;
+    static const size_t ranges[6][2] = {{1, 0}, {0, 4}, {3, 1}, {SIZE_MAX, 1}, {1, SIZE_MAX}, {SIZE_MAX, SIZE_MAX}};
+    for (closed = 0; closed < 2; closed++) {
+        for (int i = 0; i < 6; i++) {
+            region_first = ranges[i][0];
+            region_count = ranges[i][1];
+            REFUSED(HOLD, MINVAR_BAD_REGION, region_count == 0 ? "no elements" : "a curve of 3");
+            CHECK(last.index == region_first && last.needed == region_count && last.given == 3);
+        }
+    }
+    region_first = region_count = 2;
+    closed = 0;
+    REFUSED(HOLD, MINVAR_BAD_REGION, "2 elements from element 2");
+    closed = 1;
+    WORKS(HOLD);
+    closed = 0;
+    region_first = region_count = 1;
+    for (int bad = 0; bad < 3; bad++) {
+        for (int i = 0; i < 3; i++) {
+            chain_room[i].rows[1][0] = BAD[bad];
+            if (i == 1) {
+                WORKS(HOLD); /* the region's own elements are not read */
+            } else {
+                REFUSED(HOLD, MINVAR_BAD_REFERENCE, "beside the region");
+                CHECK(last.index == (size_t)i);
+            }
+            chain_reset();
+        }
+    }
+    memset(chain_room[0].rows[4], 0, sizeof chain_room[0].rows[4]);
+    REFUSED(HOLD, MINVAR_BAD_REFERENCE, "element 0");
+    chain_reset();
+
+    /* What is held: the middle element's ends, the first as a corner. */
+    held_room[0] = minvar_joint_with_continuity(minvar_joint_at(7, 7, 7), MINVAR_G0);
+    held_room[1] = held_room[2] = minvar_joint_at(7, 7, 7);
+    WORKS(HOLD);
+    CHECK(held_room[0].position.value[0] == 1 && held_room[0].position.value[1] == 0);
+    CHECK(held_room[0].tangent[1].given == MINVAR_FREE && held_room[0].curvature[1].given == MINVAR_FREE);
+    CHECK(held_room[1].position.value[0] == 7 && held_room[1].tangent[0].given == MINVAR_FREE);
+    CHECK(held_room[2].position.value[0] == 2 && held_room[2].tangent[0].value[0] == 1);
+    CHECK(held_room[2].curvature[0].given == MINVAR_FIXED && held_room[2].curvature[0].value[1] == 0.5);
+    point = &point_room;
+    place = 2;
+    parameter = 0;
+    WORKS(AT);
+    const minvar_joint there = minvar_joint_held_at(point_room);
+    CHECK(there.continuity == MINVAR_G2 && there.position.given == MINVAR_FIXED);
+    CHECK(memcmp(there.position.value, held_room[2].position.value, sizeof there.position.value) == 0);
+    for (int side = 0; side < 2; side++) {
+        const minvar_quantity *const q[2] = {&there.tangent[side], &there.curvature[side]};
+        const minvar_quantity *const h[2] = {&held_room[2].tangent[side], &held_room[2].curvature[side]};
+        for (int i = 0; i < 2; i++) {
+            CHECK(q[i]->given == MINVAR_FIXED && h[i]->given == MINVAR_FIXED);
+            CHECK(memcmp(q[i]->value, h[i]->value, sizeof q[i]->value) == 0);
+        }
+    }
+}
+
 /* Every code of the header but the one of callbacks, which another program provokes, and MINVAR_OK. */
 static void completeness(void) {
     static const minvar_code all[] = {
@@ -643,7 +724,8 @@ static void completeness(void) {
         MINVAR_PATH_NOT_PLANAR,    MINVAR_BAD_DECIMALS,
         MINVAR_BAD_FEED,           MINVAR_BAD_PLUNGE_FEED,
         MINVAR_BAD_DEPTH,          MINVAR_BAD_SAFE_HEIGHT,
-        MINVAR_COORDINATE_TOO_LARGE,
+        MINVAR_COORDINATE_TOO_LARGE, MINVAR_BAD_REGION,
+        MINVAR_BAD_REFERENCE,
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         if (!seen[all[i]]) {
@@ -656,6 +738,7 @@ static void completeness(void) {
 int main(void) {
     curve_functions();
     measure_functions();
+    region_functions();
     path_functions();
     completeness();
     CHECK(strcmp(minvar_status_sentence(MINVAR_CONVERGED), minvar_status_sentence(6)) != 0);

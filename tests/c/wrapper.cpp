@@ -17,6 +17,7 @@ using minvar::GcodeOptions;
 using minvar::Given;
 using minvar::Joint;
 using minvar::Options;
+using minvar::Region;
 using minvar::Side;
 using minvar::Solution;
 using minvar::Solver;
@@ -228,6 +229,68 @@ void closed_and_cornered() {
     CHECK(lines.at_length(2.5).tangent[1] > 0.79 && lines.at_length(7.5).tangent[1] < -0.79);
 }
 
+void regions() {
+    const auto near = [](const double (&a)[3], const double (&b)[3]) {
+        return std::fabs(a[0] - b[0]) + std::fabs(a[1] - b[1]) + std::fabs(a[2] - b[2]) < 1e-13;
+    };
+    const std::vector<Joint> joints = {Joint::at({3, 0, 0}), Joint::at({1, 2, 0}), Joint::at({-2, 1.5, 0}),
+                                       Joint::at({-2.5, -1, 0}), Joint::at({0.5, -2.2, 0})};
+    const std::vector<minvar_element> egg = minvar::solve(joints, true).elements;
+
+    // One joint moves: two elements change, and they join the rest.
+    Solver solver;
+    const Region region(egg, 1, 2, true);
+    CHECK(same(region.elements(), std::vector<minvar_element>(egg.begin() + 1, egg.begin() + 3)));
+    CHECK(same(region.replaced(region.elements()), egg));
+    const std::vector<Joint> held = region.hold({Joint::anywhere(), Joint::at({-2, 1.6, 0}), Joint::anywhere()});
+    CHECK(solver.update_from(region.elements(), held).converged());
+    const Curve edited(region.replaced(solver.solution().elements));
+    for (std::size_t i = 0; i < 5; ++i) {
+        CHECK(same(edited.elements()[i], egg[i]) == (i < 1 || i > 2));
+        const minvar_point end = edited.at(i, 1), start = edited.at((i + 1) % 5, 0);
+        CHECK(same(end.point, start.point) && near(end.tangent, start.tangent) && near(end.curvature, start.curvature));
+    }
+    const double moved[3] = {-2, 1.6, 0};
+    CHECK(same(edited.elements()[1].rows[5], moved));
+    // What update_from() refuses leaves the solution.
+    const std::vector<minvar_element> before = solver.solution().elements;
+    try {
+        solver.update_from({}, held);
+        CHECK(!"thrown");
+    } catch (const minvar::Error &error) {
+        CHECK(error.code() == MINVAR_RESULT_TOO_SHORT && same(solver.solution().elements, before));
+    }
+
+    // Past the last element, with a joint more.
+    const Region around(egg, 4, 2, true);
+    const std::vector<minvar_element> two = around.elements();
+    CHECK(same(two[0], egg[4]) && same(two[1], egg[0]));
+    solver.solve(around.hold({joints[4], Joint::at({2.2, -1.5, 0}), joints[0], joints[1]}));
+    const Curve longer(around.replaced(solver.solution().elements));
+    CHECK(longer.elements().size() == 6 && same(longer.elements()[0], egg[1]) && same(longer.elements()[2], egg[3]));
+    for (std::size_t i = 0; i < 6; ++i) {
+        const minvar_point end = longer.at(i, 1), start = longer.at((i + 1) % 6, 0);
+        CHECK(same(end.point, start.point) && near(end.tangent, start.tangent) && near(end.curvature, start.curvature));
+    }
+
+    // At an open curve's own end, and a joint held at any place.
+    const std::vector<Joint> open = Region(egg, 0, 2).hold({joints[0], joints[1], joints[2]});
+    CHECK(same(open[0].data(), joints[0].data()) && open[2].data().curvature[0].given == MINVAR_FIXED);
+    const minvar_point place = edited.at(3, 0.25);
+    const minvar_joint there = Joint::held_at(place).data();
+    CHECK(same(there.position.value, place.point) && there.position.given == MINVAR_FIXED);
+    CHECK(same(there.tangent[0].value, place.tangent) && there.tangent[1].given == MINVAR_FIXED);
+    CHECK(near(there.curvature[1].value, place.curvature) && there.curvature[1].given == MINVAR_FIXED);
+    for (const bool closed : {false, true}) {
+        try {
+            Region(egg, 4, closed ? 6 : 2, closed);
+            CHECK(!"thrown");
+        } catch (const minvar::Error &error) {
+            CHECK(error.code() == MINVAR_BAD_REGION && error.index() == 4 && error.details().given == 5);
+        }
+    }
+}
+
 void measuring() {
     const Curve curve(minvar::solve(coving_joints(), false, with_elements(8)).elements);
     const minvar_element *elements = curve.elements().data();
@@ -370,6 +433,7 @@ int main() {
         options();
         solving();
         closed_and_cornered();
+        regions();
         measuring();
         paths();
     } catch (const std::exception &error) {

@@ -121,6 +121,11 @@ fn a_c_program_computes_the_coving() {
 }
 
 #[test]
+fn a_c_program_edits_a_region_and_leaves_the_rest() {
+    passes_with_both(&["region.c"], &[]);
+}
+
+#[test]
 fn every_wrong_argument_is_refused_and_changes_nothing() {
     passes_with_both(&["bad_input.c"], &[]);
 }

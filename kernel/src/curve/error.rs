@@ -141,7 +141,16 @@ pub enum CurveError {
     },
     /// Obstacles need a planar curve, without a tolerance, a reference shape, a given length or a warm start.
     ObstaclesNotPossible,
-    /// An element of the reference shape or of the start is not a number, or stands still at an end.
+    /// A region has no elements, or some that the curve has not.
+    BadRegion {
+        /// Its first element.
+        first: usize,
+        /// How many it has.
+        count: usize,
+        /// How many the curve has.
+        elements: usize,
+    },
+    /// An element of the reference shape, of the start or beside a region is not a number, or stands still at an end.
     BadElement {
         /// The element.
         element: usize,
@@ -224,11 +233,20 @@ impl fmt::Display for CurveError {
             Self::ObstaclesNotPossible => f.write_str(
                 "obstacles need a planar curve, without a tolerance, a reference shape, a given length or a warm start",
             ),
+            Self::BadRegion { first, count: 0, .. } => {
+                write!(f, "the region from element {first} on has no elements")
+            }
+            Self::BadRegion { first, count, elements } => {
+                write!(
+                    f,
+                    "a region of {count} elements from element {first} on is not within a curve of {elements}"
+                )
+            }
             Self::BadElement { element } => {
                 write!(
                     f,
-                    "element {element} of the reference shape or of the start has a number that is not finite, \
-                     or no direction at an end"
+                    "element {element} of the reference shape, of the start or beside the region has a number that is \
+                     not finite, or no direction at an end"
                 )
             }
             Self::CurvatureNotPerpendicular { joint } => {

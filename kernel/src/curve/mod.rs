@@ -8,6 +8,9 @@
 //! Memory is the caller's, in three calls: [`workspace_len`] and [`elements_len`] say how much, the caller brings it,
 //! [`solve()`] works in it.
 //!
+//! A solved curve is edited by [`update`], which starts from the last solution, or locally: a [`Region`] of it is computed
+//! anew and joins the rest, which stays as it is.
+//!
 //! ```
 //! use minvar::curve::{Curve, Element, Joint, Options, Quantity, elements_len, solve, workspace_len};
 //! use minvar::solve::{Silent, Status};
@@ -50,6 +53,7 @@ mod obstacle;
 mod options;
 mod passes;
 mod placement;
+mod region;
 mod rows;
 mod solve;
 mod space;
@@ -63,4 +67,5 @@ pub use joint::{Continuity, Curve, Given, Joint, Quantity, Reference};
 pub use measure::{CurvePoint, MeasureError};
 pub use obstacle::{Obstacle, Side};
 pub use options::Options;
+pub use region::Region;
 pub use solve::{Report, elements_len, minima, minima_as, solve, update, workspace_len};

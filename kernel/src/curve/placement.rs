@@ -131,8 +131,9 @@ impl Place {
 }
 
 /// Calls `visit` with every given vector relative to the origin: offsets of points with their rounding error, unit
-/// tangents, and directions of curvature.
-fn vectors(curve: &Curve<'_>, origin: &Vector3<f64>, mut visit: impl FnMut(Vector3<f64>, f64)) {
+/// tangents, and directions of curvature. A curvature that is next to nothing over the data's extent has no direction but
+/// rounding: it counts as much as it bends.
+fn vectors(curve: &Curve<'_>, origin: &Vector3<f64>, extent: f64, mut visit: impl FnMut(Vector3<f64>, f64)) {
     for obstacle in curve.obstacles {
         for point in [&obstacle.from, &obstacle.to] {
             let point = Vector3::from(*point);
@@ -149,11 +150,19 @@ fn vectors(curve: &Curve<'_>, origin: &Vector3<f64>, mut visit: impl FnMut(Vecto
         {
             visit(along, 0.0);
         }
-        for quantity in joint.tangent.iter().chain(&joint.curvature) {
-            if !matches!(quantity.given, Given::FREE | Given::SIZE)
+        for quantity in &joint.tangent {
+            if quantity.given != Given::FREE
                 && let Some(towards) = direction(&quantity.value)
             {
                 visit(towards, 0.0);
+            }
+        }
+        for quantity in &joint.curvature {
+            if !matches!(quantity.given, Given::FREE | Given::SIZE)
+                && let Some(towards) = direction(&quantity.value)
+            {
+                let bend = Vector3::from(quantity.value).amax() * extent;
+                visit(towards * bend.min(1.0), 0.0);
             }
         }
     }
@@ -171,14 +180,14 @@ fn plane_axes(curve: &Curve<'_>, origin: &Vector3<f64>) -> Option<[Vector3<f64>;
         (1, [Vector3::z(), Vector3::x()]),
     ] {
         let mut flat = true;
-        vectors(curve, origin, |vector, _| flat &= vector[across] == 0.0);
+        vectors(curve, origin, f64::INFINITY, |vector, _| flat &= vector[across] == 0.0);
         if flat {
             return Some(axes);
         }
     }
     // The longest offset is one axis; the vector farthest from it shows the other.
     let mut first = Vector3::zeros();
-    vectors(curve, origin, |vector, error| {
+    vectors(curve, origin, f64::INFINITY, |vector, error| {
         if error > 0.0 && vector.dot(&vector) > first.dot(&first) {
             first = vector;
         }
@@ -186,7 +195,7 @@ fn plane_axes(curve: &Curve<'_>, origin: &Vector3<f64>) -> Option<[Vector3<f64>;
     let extent = libm::sqrt(first.dot(&first));
     let first = first / extent;
     let mut second = Vector3::zeros();
-    vectors(curve, origin, |vector, error| {
+    vectors(curve, origin, extent, |vector, error| {
         let vector = if error > 0.0 { vector / extent } else { vector };
         let off = vector - first * first.dot(&vector);
         if off.dot(&off) > second.dot(&second) {
@@ -207,7 +216,7 @@ fn plane_axes(curve: &Curve<'_>, origin: &Vector3<f64>) -> Option<[Vector3<f64>;
     let second = second / libm::sqrt(second.dot(&second));
     let normal = first.cross(&second);
     let mut flat = true;
-    vectors(curve, origin, |vector, error| {
+    vectors(curve, origin, extent, |vector, error| {
         let allowed = if error > 0.0 { error + FLATNESS * extent } else { FLATNESS };
         flat &= normal.dot(&vector).abs() <= allowed;
     });
