@@ -125,7 +125,7 @@ public:
 
     /// Which error: the numbers are fixed for good, the sentence of what() is not.
     minvar_code code() const noexcept { return error_.code; }
-    /// The joint, element or option, from 0, that is to blame, where the code says so; else 0.
+    /// The joint, element, obstacle or option, from 0, that is to blame, where the code says so; else 0.
     std::size_t index() const noexcept { return error_.index; }
     /// All that the library told.
     const minvar_error &details() const noexcept { return error_; }
