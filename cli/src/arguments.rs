@@ -49,8 +49,8 @@ Input:
   Where tangent or curvature are not common to both sides, Arriving or Leaving gives one: (Fixed Tangent Leaving (1,0,0)).
 
   A planar curve keeps clear of points and segments: it leaves them to its left or right, in the direction in which it runs,
-  at this distance or more. The plane is seen from +z, +x or +y, whichever its normal is nearest to. Not with --tolerance,
-  --length, --reference or --dimension 3.
+  at this distance or more. The plane is seen from +z, +x or +y, whichever its normal is nearest to. Each place where the
+  curve touches an obstacle adds as many elements as a span has. Not with --tolerance, --length, --reference or --dimension 3.
 
     (Obstacle Left 0.25 (6,-6,0))
     (Obstacle Right 0.25 (0,1,0) (3,1,0))
@@ -134,7 +134,7 @@ pub(crate) struct CurveArguments {
     #[arg(long, value_name = "OUT", help_heading = "Outputs (`-` is the standard output)")]
     pub(crate) json: Option<PathBuf>,
 
-    /// Draw a polygon beneath the curve, which does not change the curve; may be given several times
+    /// Draw a polygon beneath the curve; it does not change the curve; may be given several times
     #[arg(
         long,
         value_name = "X,Y X,Y …",

@@ -58,6 +58,8 @@ fn the_coving_has_the_figures_of_the_true_curve_and_clears_the_duct() {
     assert!(fine[5] < -0.45, "the published curve cuts off the corner of a square duct: {}", fine[5]);
     let clear = row(&text, "clear of the duct");
     close(clear[5], 0.25, 1e-6);
+    // The curvature at the wall that clears the duct without obstacles (`coving_clear` in tests/data/truth.csv).
+    assert!(clear[2] < 0.55 * 1.662764e-2, "{}", clear[2]);
     // The same curve in another way: through the place where it touches, as a joint at which nothing else is given.
     let ends = [
         Joint::at([0.5, -12.0, 0.0]).with_tangent(Quantity::fixed([0.0, 1.0, 0.0])),
