@@ -47,7 +47,7 @@ coving: examples
 		--svg $(OUT)/coving.svg --polygon "0,0 6,0 6,-6 0,-6" --nc $(OUT)/coving.ngc --units inch --path-tolerance 0.001 --feed 40 --safe-height 2 \
 		--csv $(OUT)/coving.csv --json $(OUT)/coving.json
 	@echo
-	@echo "The published curve cuts off the corner of a square duct; with the curvature that the example found it is clear:"
+	@echo "The published curve cuts off the corner of a square duct. With the duct's faces as obstacles it is clear:"
 	target/release/minvar curve tests/data/curves/coving_clear.mvc --elements-per-span 8 \
 		--svg $(OUT)/clear_of_the_duct.svg --polygon "0,0 6,0 6,-6 0,-6"
 	@echo

@@ -87,7 +87,8 @@ typedef enum minvar_code {
     // An element of the reference shape, of the start or beside a region is not finite or has no direction at an end.
     // `index`: the element.
     MINVAR_BAD_REFERENCE = 28,
-    // An obstacle has a number that is not finite, a negative clearance or an unknown side. `index`: the obstacle.
+    // An obstacle has a number that is not finite or beyond 1e100, a negative clearance or an unknown side. `index`: the
+    // obstacle.
     MINVAR_BAD_OBSTACLE = 29,
     // Obstacles need a planar curve, without a tolerance, a reference shape, a given length or a warm start.
     MINVAR_OBSTACLES_NOT_POSSIBLE = 30,
@@ -192,6 +193,15 @@ typedef enum minvar_functional {
     MINVAR_SPACE_MEC = 5,
 } minvar_functional;
 
+// A side of a curve, seen in the direction in which it runs.
+typedef enum minvar_side {
+    // The obstacle lies to the left of the curve: about the plane's normal, which is +z, +x or +y where the data lie in a
+    // coordinate plane and else has its largest coordinate positive.
+    MINVAR_LEFT = 0,
+    // The obstacle lies to the right of the curve.
+    MINVAR_RIGHT = 1,
+} minvar_side;
+
 // The unit of all lengths of a program: the curve's, the tolerance's and the feed's.
 typedef enum minvar_units {
     // G21.
@@ -229,7 +239,7 @@ typedef struct minvar_element {
 typedef struct minvar_error {
     // The code, as returned.
     enum minvar_code code;
-    // The joint, element or option, from 0, that is to blame, where the code says so; else 0.
+    // The joint, element, obstacle or option, from 0, that is to blame, where the code says so; else 0.
     size_t index;
     // How many entries are needed, where the code says so; else 0.
     size_t needed;
@@ -370,7 +380,8 @@ typedef struct minvar_report {
     enum minvar_status status;
     // 1 if the curve was computed in a plane, 0 in space.
     int32_t planar;
-    // How many elements the curve has: as many as minvar_curve_elements_len() says, or fewer with a tolerance.
+    // How many elements the curve has: as many as minvar_curve_elements_len() says, or fewer with a tolerance or
+    // obstacles.
     size_t elements;
     // The number of iterations: trial steps, accepted or not.
     size_t iterations;
@@ -592,16 +603,15 @@ struct minvar_joint minvar_joint_with_curvature(struct minvar_joint joint,
 // The same joint with another continuity: one of enum minvar_continuity.
 struct minvar_joint minvar_joint_with_continuity(struct minvar_joint joint, uint32_t continuity);
 
-// The curve through `joint_count` joints, without a reference shape or obstacles; `closed` as in minvar_curve. The joints stay the
-// caller's.
+// The curve through `joint_count` joints, without a reference shape or obstacles; `closed` as in minvar_curve. The joints
+// stay the caller's.
 struct minvar_curve minvar_curve_through(const struct minvar_joint *joints,
                                          size_t joint_count,
                                          int32_t closed);
 
 // The number of elements that a curve will have, or with a tolerance or obstacles the most that it may have (an obstacle
-// counts as four spans): spans times `elements_per_span`, with one span fewer than joints of
-// an open curve and as many as joints of a closed one. Data and options are not checked otherwise; 0 if a pointer is
-// NULL or misaligned.
+// counts as four spans): spans times `elements_per_span`, with one span fewer than joints of an open curve and as many as
+// joints of a closed one. Data and options are not checked otherwise; 0 if a pointer is NULL or misaligned.
 size_t minvar_curve_elements_len(const struct minvar_curve *curve,
                                  const struct minvar_options *options);
 
@@ -619,9 +629,9 @@ enum minvar_code minvar_curve_workspace_len(const struct minvar_curve *curve,
 //
 // `workspace`: `workspace_len` doubles, at least what minvar_curve_workspace_len() says, in any condition; what is left
 // in it afterwards means nothing. `observer` may be NULL. `elements` receives minvar_curve_elements_len() elements in
-// order along the curve, or with a tolerance as many as `report->elements` says; `elements_len` is the room. `records`
-// (may be NULL with `records_len` 0) receives a record an iteration as far as it reaches. What lies beyond in either array
-// is left alone. The arrays must not overlap.
+// order along the curve, or with a tolerance or obstacles as many as `report->elements` says; `elements_len` is the room.
+// `records` (may be NULL with `records_len` 0) receives a record an iteration as far as it reaches. What lies beyond in
+// either array is left alone. The arrays must not overlap.
 //
 // Fixed positions and tangent directions are kept exactly; planar data give a curve in their plane.
 //

@@ -125,7 +125,7 @@ public:
 
     /// Which error: the numbers are fixed for good, the sentence of what() is not.
     minvar_code code() const noexcept { return error_.code; }
-    /// The joint, element or option, from 0, that is to blame, where the code says so; else 0.
+    /// The joint, element, obstacle or option, from 0, that is to blame, where the code says so; else 0.
     std::size_t index() const noexcept { return error_.index; }
     /// All that the library told.
     const minvar_error &details() const noexcept { return error_; }
@@ -342,7 +342,44 @@ private:
     bool closed_;
 };
 
-/// The options of a curve, with the library's defaults. minvar.h says what each may be.
+/// A point or a segment that a planar curve leaves on one side, at a distance or more.
+///
+///     Obstacle::segment({0, -6, 0}, {6, -6, 0}, 0.25, Obstacle::Side::Left)
+///
+/// Nothing is checked before the solve, whose errors name the obstacle.
+class Obstacle {
+public:
+    /// The side of the curve, in the direction in which it runs, on which the obstacle stays. minvar.h says from where the
+    /// plane is seen.
+    enum class Side : std::uint32_t { Left = MINVAR_LEFT, Right = MINVAR_RIGHT };
+
+    /// A point.
+    [[nodiscard]] static Obstacle point(const Vec &at, double clearance, Side side) {
+        return segment(at, at, clearance, side);
+    }
+    /// A segment.
+    [[nodiscard]] static Obstacle segment(const Vec &a, const Vec &b, double clearance, Side side) {
+        return Obstacle({{a[0], a[1], a[2]}, {b[0], b[1], b[2]}, clearance, static_cast<std::uint32_t>(side)});
+    }
+
+    /// As the C interface has it.
+    const minvar_obstacle &data() const noexcept { return data_; }
+
+private:
+    explicit Obstacle(const minvar_obstacle &data) : data_(data) {}
+
+    minvar_obstacle data_;
+};
+
+/// A shape that a curve keeps to as far as its joints allow (thesis 4.6): as many elements as the curve will have,
+/// Solution::elements of before its joints moved, say. With the weight 1 the shape is kept, towards 0 it is smoothed away.
+struct Reference {
+    std::vector<Element> elements;
+    double weight = 1;
+};
+
+/// The options of a curve, with the library's defaults, and what is asked of it beyond its joints. minvar.h says what each
+/// may be.
 struct Options {
     Functional functional = static_cast<Functional>(minvar_options_defaults().functional);
     std::uint32_t elements_per_span = minvar_options_defaults().elements_per_span;
@@ -355,8 +392,12 @@ struct Options {
     double bending = minvar_options_defaults().bending;
     double length = minvar_options_defaults().length;
     double tolerance = minvar_options_defaults().tolerance;
+    /// What a planar curve keeps clear of.
+    std::vector<Obstacle> obstacles = {};
+    /// The shape that it keeps to; none without elements.
+    Reference reference = {};
 
-    /// As the C interface has it.
+    /// As the C interface has it, which keeps obstacles and reference with the joints.
     minvar_options data() const noexcept {
         minvar_options options = minvar_options_defaults();
         options.functional = static_cast<std::uint32_t>(functional);
@@ -383,11 +424,12 @@ using Observer = std::function<bool(std::size_t iteration, const Record &record)
 
 /// A computed curve.
 struct Solution {
-    /// The elements in order along the curve: Options::elements_per_span a span, or with a tolerance fewer.
+    /// The elements in order along the curve: Options::elements_per_span a span, with a tolerance fewer, and so many more
+    /// for each place where it touches an obstacle.
     std::vector<Element> elements;
     /// How the computation ended, with figures.
     Report report{};
-    /// What each iteration did.
+    /// What each iteration did; empty of minima.
     std::vector<Record> records;
 
     Status status() const noexcept { return static_cast<Status>(report.status); }
@@ -406,7 +448,7 @@ public:
     const Solution &solve(const std::vector<Joint> &joints, bool closed = false, const Options &options = {},
                           const Observer &observer = {}) {
         const minvar_options chosen = options.data();
-        const minvar_curve curve = prepare(joints, closed, chosen);
+        const minvar_curve curve = prepare(joints, closed, options, chosen);
         solution_.elements.resize(minvar_curve_elements_len(&curve, &chosen));
         detail::ObserverBridge bridge = watch(observer);
         detail::call(minvar_curve_solve, &curve, &chosen, workspace_.data(), workspace_.size(),
@@ -418,12 +460,12 @@ public:
     }
 
     /// Computes the last curve anew after its joints changed a little, as when one is dragged: a warm start from the last
-    /// solution, which the new one replaces. As many joints and elements as then; the curve does not jump to another
-    /// minimum. Throws as solve() does.
+    /// solution, which the new one replaces. As many joints and elements as then, and no obstacles; the curve does not jump
+    /// to another minimum. Throws as solve() does.
     const Solution &update(const std::vector<Joint> &joints, bool closed = false, const Options &options = {},
                            const Observer &observer = {}) {
         const minvar_options chosen = options.data();
-        const minvar_curve curve = prepare(joints, closed, chosen);
+        const minvar_curve curve = prepare(joints, closed, options, chosen);
         detail::ObserverBridge bridge = watch(observer);
         detail::call(minvar_curve_update, &curve, &chosen, workspace_.data(), workspace_.size(),
                      detail::minvar_hpp_observe, &bridge, solution_.elements.data(), solution_.elements.size(),
@@ -446,6 +488,33 @@ public:
         return solution_;
     }
 
+    /// Looks for local minima, at most so many, and returns those that it found, the lowest first (thesis 4.10: curves with
+    /// and without a loop); none where none converged. The solver's own solution stays. The observer sees every solve begin
+    /// with iteration 1; where it stops one, what was found before is returned. Throws as solve() does.
+    std::vector<Solution> minima(const std::vector<Joint> &joints, std::size_t most, bool closed = false,
+                                 const Options &options = {}, const Observer &observer = {}) {
+        const minvar_options chosen = options.data();
+        const minvar_curve curve = prepare(joints, closed, options, chosen);
+        const std::size_t length = minvar_curve_elements_len(&curve, &chosen);
+        std::vector<Report> reports(most);
+        std::vector<Element> elements((most + 1) * length);
+        std::size_t found = 0;
+        detail::ObserverBridge bridge([&observer](std::size_t iteration, const Record &record) {
+            return !observer || observer(iteration, record);
+        });
+        detail::call(minvar_curve_minima, &curve, &chosen, workspace_.data(), workspace_.size(),
+                     detail::minvar_hpp_observe, &bridge, elements.data(), elements.size(), reports.data(),
+                     reports.size(), &found);
+        bridge.rethrow();
+        std::vector<Solution> result(found);
+        for (std::size_t i = 0; i < found; ++i) {
+            const Element *first = elements.data() + i * length;
+            result[i].elements.assign(first, first + reports[i].elements);
+            result[i].report = reports[i];
+        }
+        return result;
+    }
+
     /// The last solution; empty and Status::Unsolved before the first.
     const Solution &solution() const noexcept { return solution_; }
 
@@ -453,16 +522,29 @@ public:
     Solution take() { return std::exchange(solution_, Solution{}); }
 
 private:
-    /// The curve through joints that are kept, with memory for solving it; throws for what is wrong with joints or options.
-    minvar_curve prepare(const std::vector<Joint> &joints, bool closed, const minvar_options &options) {
+    /// The curve through joints and past obstacles that are kept, with memory for solving it; throws for what is wrong with
+    /// them or the options. The reference stays the caller's.
+    minvar_curve prepare(const std::vector<Joint> &joints, bool closed, const Options &options,
+                         const minvar_options &chosen) {
         detail::require_abi();
         joints_.clear();
         for (const Joint &joint : joints) {
             joints_.push_back(joint.data());
         }
-        const minvar_curve curve = minvar_curve_through(joints_.data(), joints_.size(), closed ? 1 : 0);
+        obstacles_.clear();
+        for (const Obstacle &obstacle : options.obstacles) {
+            obstacles_.push_back(obstacle.data());
+        }
+        minvar_curve curve = minvar_curve_through(joints_.data(), joints_.size(), closed ? 1 : 0);
+        curve.obstacles = obstacles_.data();
+        curve.obstacle_count = obstacles_.size();
+        if (!options.reference.elements.empty()) {
+            curve.reference = options.reference.elements.data();
+            curve.reference_count = options.reference.elements.size();
+            curve.reference_weight = options.reference.weight;
+        }
         std::size_t needed = 0;
-        detail::call(minvar_curve_workspace_len, &curve, &options, &needed);
+        detail::call(minvar_curve_workspace_len, &curve, &chosen, &needed);
         if (workspace_.size() < needed) {
             workspace_.resize(needed);
         }
@@ -479,6 +561,7 @@ private:
     }
 
     std::vector<minvar_joint> joints_;
+    std::vector<minvar_obstacle> obstacles_;
     std::vector<double> workspace_;
     Solution solution_;
 };
@@ -489,6 +572,12 @@ inline Solution solve(const std::vector<Joint> &joints, bool closed = false, con
     Solver solver;
     solver.solve(joints, closed, options, observer);
     return solver.take();
+}
+
+/// Looks for local minima of one curve; see Solver::minima().
+inline std::vector<Solution> minima(const std::vector<Joint> &joints, std::size_t most, bool closed = false,
+                                    const Options &options = {}, const Observer &observer = {}) {
+    return Solver().minima(joints, most, closed, options, observer);
 }
 
 // ---- Measuring, converting, paths --------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 use crate::output::Target;
 use crate::solve::Functional;
+use clap::builder::TypedValueParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::{Path, PathBuf};
 
@@ -47,11 +48,19 @@ Input:
 
   Where tangent or curvature are not common to both sides, Arriving or Leaving gives one: (Fixed Tangent Leaving (1,0,0)).
 
+  A planar curve keeps clear of points and segments: it leaves them to its left or right, in the direction in which it runs,
+  at this distance or more. The plane is seen from +z, +x or +y, whichever its normal is nearest to. Each place where the
+  curve touches an obstacle adds as many elements as a span has. Not with --tolerance, --length, --reference or --dimension 3.
+
+    (Obstacle Left 0.25 (6,-6,0))
+    (Obstacle Right 0.25 (0,1,0) (3,1,0))
+
 Examples:
   minvar curve coving.mvc --svg coving.svg
   minvar curve coving.mvc --tolerance 1e-6 --json - --quiet
   minvar curve coving.mvc --nc coving.ngc --feed 600 --safe-height 5 --depth -2 --path-tolerance 0.005
   minvar curve antipodal.mvc --functional si-mvc
+  minvar curve loop.mvc --minima 5 --minimum 2 --svg loop.svg
   minvar curve moved.mvc --reference coving.json --reference-weight 0.8
   minvar curve - --csv samples.csv --samples 101 < coving.mvc
 
@@ -97,6 +106,14 @@ pub(crate) struct CurveArguments {
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=16))]
     pub(crate) continuation: u32,
 
+    /// Look for up to N local minima and list them, the lowest first; the lowest is written
+    #[arg(long, value_name = "N", value_parser = minima(), conflicts_with = "reference")]
+    pub(crate) minima: Option<usize>,
+
+    /// Which of the listed minima is written: 1 is the lowest
+    #[arg(long, default_value_t = 1, value_name = "K", value_parser = minima(), requires = "minima")]
+    pub(crate) minimum: usize,
+
     /// Print no figures
     #[arg(long, short)]
     pub(crate) quiet: bool,
@@ -117,7 +134,7 @@ pub(crate) struct CurveArguments {
     #[arg(long, value_name = "OUT", help_heading = "Outputs (`-` is the standard output)")]
     pub(crate) json: Option<PathBuf>,
 
-    /// Draw a polygon beneath the curve: what it must keep clear of, say; may be given several times
+    /// Draw a polygon beneath the curve; it does not change the curve; may be given several times
     #[arg(
         long,
         value_name = "X,Y X,Y …",
@@ -189,6 +206,11 @@ pub(crate) struct ShapeArguments {
         allow_negative_numbers = true
     )]
     pub(crate) reference_weight: f64,
+}
+
+/// How many minima may be asked for.
+fn minima() -> impl TypedValueParser<Value = usize> {
+    clap::value_parser!(u32).range(1..=100).map(|count| count as usize)
 }
 
 /// A polygon of a picture, in the curve's coordinates.
@@ -314,7 +336,7 @@ mod tests {
     fn the_definition_is_sound_and_the_helps_examples_parse() {
         Arguments::command().debug_assert();
         let examples: Vec<_> = CURVE_HELP.lines().filter(|line| line.starts_with("  minvar ")).collect();
-        assert_eq!(examples.len(), 6);
+        assert_eq!(examples.len(), 7);
         for example in examples {
             let line = example.split(" < ").next().unwrap_or_default();
             parse(line).unwrap_or_else(|error| panic!("{line}: {error}"));
@@ -381,6 +403,8 @@ mod tests {
             ("MEC", Functional::Mec),
             ("si-mvc", Functional::SiMvc),
             ("SI-Mec", Functional::SiMec),
+            ("space-mvc", Functional::SpaceMvc),
+            ("Space-MEC", Functional::SpaceMec),
         ] {
             let found = parse(&format!("minvar curve a --functional {name}")).expect(name).functional;
             assert_eq!((found, found.name()), (functional, name.to_lowercase().as_str()));

@@ -23,9 +23,19 @@
 //! and `(Size Curvature (0.27,0,0))` keeps a curvature's size, its direction being where the search starts;
 //! `(Size Curvature 0.27)` leaves that to the start curve and needs a tangent.
 //!
-//! Whether the numbers make sense as a curve is for the kernel to say: [`NamedJoint`] keeps the place for its answer.
+//! A planar curve keeps clear of points and segments: it leaves them to the left or to the right, seen in the direction in
+//! which it runs, at a distance or more.
+//!
+//! ```text
+//! (Obstacle Left 0.25 (6,-6,0))
+//! (Obstacle Right 0.25 (0,1,0) (3,1,0))
+//! ```
+//!
+//! Whether the numbers make sense as a curve is for the kernel to say: [`NamedJoint`] and [`PlacedObstacle`] keep the place
+//! for its answer.
 
 mod fault;
+mod obstacle;
 mod parse;
 mod point;
 mod position;
@@ -36,6 +46,7 @@ mod words;
 
 pub(crate) use fault::Fault;
 
+use minvar::curve::Obstacle;
 use words::Place;
 
 /// A curve to compute, as the file says.
@@ -47,6 +58,19 @@ pub(crate) struct Specification {
     pub(crate) closed: bool,
     /// The joints in the curve's order: at least two, three of a closed curve.
     pub(crate) joints: Vec<NamedJoint>,
+    /// What the curve keeps clear of, in the file's order.
+    pub(crate) obstacles: Vec<PlacedObstacle>,
+}
+
+/// An obstacle and where the file has it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PlacedObstacle {
+    /// The point or segment with its clearance and side.
+    pub(crate) shape: Obstacle,
+    /// The line of its opening parenthesis, from 1.
+    pub(crate) line: usize,
+    /// The column of its opening parenthesis in characters, from 1.
+    pub(crate) column: usize,
 }
 
 /// One joint of the curve.
@@ -121,11 +145,11 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Reading, Box<Fault>> {
     resolve::resolve(text, parse::forms(text)?)
 }
 
-/// What the kernel says of a joint, at the joint's place in the file that was read.
-pub(crate) fn fault_at(bytes: &[u8], joint: &NamedJoint, message: impl Into<String>) -> Box<Fault> {
+/// What the kernel says of a joint or an obstacle, at its line and column in the file that was read.
+pub(crate) fn fault_at(bytes: &[u8], [line, column]: [usize; 2], message: impl Into<String>) -> Box<Fault> {
     let text = String::from_utf8_lossy(bytes);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-    Fault::error(text, words::place_at(text, joint.line, joint.column), message)
+    Fault::error(text, words::place_at(text, line, column), message)
 }
 
 /// Why bytes that are not UTF-8 cannot be read, and where they begin to be wrong.

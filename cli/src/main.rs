@@ -67,14 +67,19 @@ fn curve(arguments: &CurveArguments) -> Result<Status, Failure> {
     warnings.iter().for_each(|warning| complain(&show(warning)));
 
     let options = options(arguments)?;
-    let solution = solve::solve(&specification, &options).map_err(|error| {
-        Failure::Input(match error.joint.and_then(|joint| specification.joints.get(joint)) {
-            Some(joint) => show(&constraints::fault_at(&bytes, joint, error.message)),
+    let solutions = solve::solve(&specification, &options).map_err(|error| {
+        Failure::Input(match error.place {
+            Some(place) => show(&constraints::fault_at(&bytes, place, error.message)),
             None => format!("error: {}", error.message),
         })
     })?;
+    let chosen = chosen(arguments.minimum, &solutions)?;
+    let solution = &solutions[chosen];
 
-    let (prepared, figures) = outputs(arguments, &targets, &specification, &options, &solution)?;
+    let (prepared, mut figures) = outputs(arguments, &targets, &specification, &options, solution)?;
+    if options.minima > 0 && solution.status == Status::Converged {
+        figures += &table(&solutions, chosen);
+    }
     for output in prepared {
         output.commit().map_err(|message| Failure::Output(format!("error: {message}")))?;
     }
@@ -88,7 +93,7 @@ fn curve(arguments: &CurveArguments) -> Result<Status, Failure> {
         }
     }
     if solution.status != Status::Converged {
-        complain(&format!("warning: {}", advice(&options, &solution)));
+        complain(&format!("warning: {}", advice(&options, solution)));
     }
     if options.has_tolerance() && options.elements_per_span == 1 {
         complain(
@@ -111,6 +116,19 @@ fn curve(arguments: &CurveArguments) -> Result<Status, Failure> {
 const TRUSTED: f64 = 1e-4;
 /// A functional below this, in the curve's length, is nothing.
 const NOTHING: f64 = 1e-12;
+
+/// The index of the minimum that is asked for by its number, from 1. What has not converged is no minimum, but all there is.
+fn chosen(number: usize, solutions: &[Solution]) -> Result<usize, Failure> {
+    if number <= solutions.len() || solutions[0].status != Status::Converged {
+        return Ok(number.min(solutions.len()) - 1);
+    }
+    let found = if solutions.len() == 1 {
+        "1 minimum was found".to_owned()
+    } else {
+        format!("{} minima were found", solutions.len())
+    };
+    Err(Failure::Input(format!("error: --minimum {number}: {found}")))
+}
 
 /// No two outputs in one place, and none in an input's.
 fn check_targets(arguments: &CurveArguments, targets: &[(&'static str, Target)]) -> Result<(), Failure> {
@@ -181,6 +199,7 @@ fn options(arguments: &CurveArguments) -> Result<Options, Failure> {
         }),
         max_iterations: arguments.max_iterations,
         continuation: arguments.continuation,
+        minima: arguments.minima.unwrap_or(0),
         dimension: arguments.dimension.unwrap_or(0),
         reference,
     })
@@ -283,6 +302,23 @@ fn figures(specification: &Specification, options: &Options, solution: &Solution
     out
 }
 
+/// The minima, a line each, the lowest first; an arrow points to the one that is written.
+fn table(minima: &[Solution], written: usize) -> String {
+    let mut out = format!(
+        "\n  {:7}{:>17}{:>17}{:>17}{:>17}  status\n",
+        "minimum", "value", "variation", "bending", "length"
+    );
+    for (index, minimum) in minima.iter().enumerate() {
+        let arrow = if index == written { '>' } else { ' ' };
+        let _ = write!(out, "{arrow} {:<7}", index + 1);
+        for figure in [minimum.value, minimum.variation, minimum.bending, minimum.length] {
+            let _ = write!(out, "{:>17}", rounded(figure, 10));
+        }
+        let _ = writeln!(out, "  {}", minimum.status.name());
+    }
+    out
+}
+
 /// `mvc + 0.5 length`
 fn functional(options: &Options) -> String {
     let mut out = options.functional.name().to_owned();
@@ -313,7 +349,7 @@ fn svg(
     // A file is usually named after its curve, and the curve `test`.
     let stem = arguments.file.file_stem().map(|stem| stem.to_string_lossy().replace('_', " "));
     let title = stem.filter(|_| !is_stdin(&arguments.file)).unwrap_or_else(|| specification.name.clone());
-    let obstacles: Vec<_> = arguments.polygon.iter().map(|polygon| polygon.0.clone()).collect();
+    let polygons: Vec<_> = arguments.polygon.iter().map(|polygon| polygon.0.clone()).collect();
     let mut functional = solution.functional.formula().to_owned();
     for (weight, of) in [(options.bending, "∫ κ² ds"), (options.tension, "L")] {
         if weight > 0.0 {
@@ -343,6 +379,7 @@ fn svg(
         elements: &solution.elements,
         closed: specification.closed,
         joints: &Mark::of(specification, &solution.starts),
-        obstacles: &obstacles,
+        polygons: &polygons,
+        obstacles: &specification.obstacles,
     })
 }

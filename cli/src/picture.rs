@@ -2,6 +2,7 @@
 //! arc length; of a space curve a view in a room, and the torsion too. The same curve gives the same bytes.
 
 mod joints;
+mod obstacles;
 mod page;
 mod plot;
 mod scale;
@@ -12,7 +13,7 @@ mod view;
 
 pub(crate) use scale::figure;
 
-use crate::constraints::{Given, NamedJoint, Specification};
+use crate::constraints::{Given, NamedJoint, PlacedObstacle, Specification};
 use crate::trace::{STRAIGHT, Trace, Vector};
 use minvar::curve::Element;
 use page::{Anchor, Page, width};
@@ -31,8 +32,10 @@ pub(crate) struct Picture<'a> {
     pub(crate) closed: bool,
     /// The joints in the curve's order.
     pub(crate) joints: &'a [Mark],
-    /// Closed polygons drawn behind the curve: what it must keep clear of.
-    pub(crate) obstacles: &'a [Vec<Vector>],
+    /// Closed polygons drawn behind the curve.
+    pub(crate) polygons: &'a [Vec<Vector>],
+    /// What the curve was to keep clear of.
+    pub(crate) obstacles: &'a [PlacedObstacle],
 }
 
 /// A joint in a picture.
@@ -96,7 +99,9 @@ text { font-family: 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', sans-
 .grid line { stroke: #ebebeb }
 .zero { stroke: #9a9a9a }
 .station { stroke: #b5b5b5; stroke-width: 0.7; stroke-dasharray: 2 2.5 }
-.obstacle { fill: #efefef; stroke: #a8a8a8 }
+.polygon { fill: #efefef; stroke: #a8a8a8 }
+.clearance { fill: none; stroke: #8a8a8a; stroke-width: 0.8; stroke-dasharray: 1.5 2.5 }
+.obstacle { fill: #6e6e6e; stroke: #6e6e6e; stroke-width: 2.4; stroke-linecap: round }
 .shadow { fill: none; stroke: #cfcfcf; stroke-width: 1.4 }
 .curve { fill: none; stroke: #0072b2; stroke-width: 2.2; stroke-linejoin: round; stroke-linecap: round }
 .tooth { fill: none; stroke: #d55e00; stroke-width: 0.6; stroke-opacity: 0.55 }
@@ -171,7 +176,8 @@ fn legend(page: &mut Page, mut y: f64, picture: &Picture<'_>, steepest: Option<f
         (joints.iter().any(|mark| mark.slide.is_some()), "slide", "sliding point".to_owned()),
         (joints.iter().any(|mark| mark.tangent != [false; 2]), "tangent", "fixed tangent".to_owned()),
         (joints.iter().any(|mark| mark.curvature), "ring", "fixed curvature".to_owned()),
-        (!picture.obstacles.is_empty(), "obstacle", "keep clear".to_owned()),
+        (!picture.polygons.is_empty(), "polygon", "keep clear".to_owned()),
+        (!picture.obstacles.is_empty(), "obstacle", "obstacle, its clearance dotted".to_owned()),
     ];
     let mut x = MARGIN;
     for (_, symbol, text) in items.iter().filter(|(shown, ..)| *shown) {
@@ -199,7 +205,12 @@ fn legend(page: &mut Page, mut y: f64, picture: &Picture<'_>, steepest: Option<f
                 page.circle("ring", middle, RING);
                 page.circle("fixed", middle, DOT);
             }
-            "obstacle" => page.rectangle("obstacle", [x, y - 8.5], [16.0, 10.0]),
+            "polygon" => page.rectangle("polygon", [x, y - 8.5], [16.0, 10.0]),
+            "obstacle" => {
+                page.line("clearance", [x, y - 8.5], [x + 16.0, y - 8.5]);
+                page.line("obstacle", left, right);
+                page.line("clearance", [x, y + 1.3], [x + 16.0, y + 1.3]);
+            }
             class => page.circle(class, middle, DOT),
         }
         page.text("", [x + SYMBOL - 2.0, y], Anchor::Start, text);

@@ -3,7 +3,9 @@
 mod spans;
 
 use crate::constraints::{Continuity, Given, NamedJoint, Specification};
-use minvar::curve::{self, Curve, CurveError, Element, Joint, OptionName, Quantity, Reference, measure};
+use minvar::curve::{
+    self, Curve, CurveError, Element, Joint, Obstacle, OptionName, Quantity, Reference, Report, measure,
+};
 use minvar::solve::{Silent, Status};
 
 /// What a curve minimises.
@@ -17,6 +19,10 @@ pub(crate) enum Functional {
     SiMvc,
     /// Scale-invariant minimum energy: L ∫ κ² ds
     SiMec,
+    /// Minimum variation of curvature and torsion, for space curves: ∫ (dκ/ds)² + (dτ/ds)² ds
+    SpaceMvc,
+    /// Minimum energy of bending and twisting, for space curves: ∫ κ² + τ² ds
+    SpaceMec,
 }
 
 impl Functional {
@@ -27,6 +33,8 @@ impl Functional {
             Self::Mec => "mec",
             Self::SiMvc => "si-mvc",
             Self::SiMec => "si-mec",
+            Self::SpaceMvc => "space-mvc",
+            Self::SpaceMec => "space-mec",
         }
     }
 
@@ -37,23 +45,25 @@ impl Functional {
             Self::Mec => "MEC  ∫ κ² ds",
             Self::SiMvc => "SI-MVC  L³ ∫ (dκ/ds)² ds",
             Self::SiMec => "SI-MEC  L ∫ κ² ds",
+            Self::SpaceMvc => "Space MVC  ∫ (dκ/ds)² + (dτ/ds)² ds",
+            Self::SpaceMec => "Space MEC  ∫ κ² + τ² ds",
         }
     }
 
-    /// The functional of the same kind that does not change with the size, if this one does.
+    /// The functional of the same kind that does not change with the size, if this one does and there is one.
     pub(crate) fn scale_invariant(self) -> Option<Self> {
         match self {
             Self::Mvc => Some(Self::SiMvc),
             Self::Mec => Some(Self::SiMec),
-            Self::SiMvc | Self::SiMec => None,
+            Self::SiMvc | Self::SiMec | Self::SpaceMvc | Self::SpaceMec => None,
         }
     }
 
     /// The power of the length by which a value shrinks when the shape grows.
     pub(crate) fn scale_power(self) -> i32 {
         match self {
-            Self::Mvc => 3,
-            Self::Mec => 1,
+            Self::Mvc | Self::SpaceMvc => 3,
+            Self::Mec | Self::SpaceMec => 1,
             Self::SiMvc | Self::SiMec => 0,
         }
     }
@@ -64,6 +74,8 @@ impl Functional {
             Self::Mec => curve::Functional::MEC,
             Self::SiMvc => curve::Functional::SI_MVC,
             Self::SiMec => curve::Functional::SI_MEC,
+            Self::SpaceMvc => curve::Functional::SPACE_MVC,
+            Self::SpaceMec => curve::Functional::SPACE_MEC,
         }
     }
 }
@@ -87,6 +99,8 @@ pub(crate) struct Options {
     pub(crate) max_iterations: u32,
     /// Stages of a continuation under tension.
     pub(crate) continuation: u32,
+    /// The most local minima to look for; 0 takes what the usual start leads to.
+    pub(crate) minima: usize,
     /// 2, 3, or 0 to find out.
     pub(crate) dimension: u32,
     /// A shape whose change of curvature is the aim.
@@ -105,6 +119,7 @@ impl Options {
         elements_per_span: 1,
         max_iterations: 500,
         continuation: 0,
+        minima: 0,
         dimension: 0,
         reference: None,
     };
@@ -166,14 +181,42 @@ pub(crate) struct Solution {
 pub(crate) struct Error {
     /// One sentence naming the culprit.
     pub(crate) message: String,
-    /// The index of the joint in the specification that it is about.
-    pub(crate) joint: Option<usize>,
+    /// The line and column of the joint or obstacle that it is about.
+    pub(crate) place: Option<[usize; 2]>,
 }
 
-/// Computes the curve.
-pub(crate) fn solve(specification: &Specification, options: &Options) -> Result<Solution, Error> {
+/// Computes the curve: one solution, or as many minima as are asked for and found, the lowest first. Where none is found
+/// the one solution has not converged.
+pub(crate) fn solve(specification: &Specification, options: &Options) -> Result<Vec<Solution>, Error> {
+    with_curve(specification, options, |curve, kernel_options| {
+        let mut workspace = vec![0.0; curve::workspace_len(curve, kernel_options)?];
+        let len = curve::elements_len(curve, kernel_options);
+        let mut elements = vec![Element::ZERO; (options.minima + 1) * len];
+        let report =
+            curve::solve(curve, kernel_options, &mut workspace, &mut elements, &mut [], &mut Silent)?;
+        let usual = Solution::new(specification, options, &report, &elements);
+        if options.minima == 0 {
+            return Ok(vec![usual]);
+        }
+        let mut reports = vec![report; options.minima];
+        let found =
+            curve::minima(curve, kernel_options, &mut workspace, &mut elements, &mut reports, &mut Silent)?;
+        let each = reports[..found].iter().zip(elements.chunks(len));
+        let minima: Vec<_> =
+            each.map(|(report, elements)| Solution::new(specification, options, report, elements)).collect();
+        Ok(if minima.is_empty() { vec![usual] } else { minima })
+    })
+}
+
+/// Calls the kernel with its own form of what is asked for; gives its errors the names that the user wrote.
+fn with_curve<T>(
+    specification: &Specification,
+    options: &Options,
+    work: impl FnOnce(&Curve<'_>, &curve::Options) -> Result<T, CurveError>,
+) -> Result<T, Error> {
     let joints: Vec<Joint> = specification.joints.iter().map(joint).collect();
-    let mut curve = Curve::new(&joints, specification.closed);
+    let obstacles: Vec<Obstacle> = specification.obstacles.iter().map(|obstacle| obstacle.shape).collect();
+    let mut curve = Curve::new(&joints, specification.closed).with_obstacles(&obstacles);
     if let Some(Shape { elements, weight, .. }) = &options.reference {
         curve = curve.with_reference(Reference { elements, weight: *weight });
     }
@@ -189,38 +232,56 @@ pub(crate) fn solve(specification: &Specification, options: &Options) -> Result<
         dimension: options.dimension,
         ..curve::Options::DEFAULT
     };
-    let wrong = |error: CurveError| Error::of(error, specification, options);
-    let mut workspace = vec![0.0; curve::workspace_len(&curve, &kernel_options).map_err(wrong)?];
-    let mut elements = vec![Element::ZERO; curve::elements_len(&curve, &kernel_options)];
-    let report = curve::solve(&curve, &kernel_options, &mut workspace, &mut elements, &mut [], &mut Silent)
-        .map_err(wrong)?;
-    elements.truncate(report.elements);
-    // A curve that stops somewhere has no curvature there: a matter of its status, not of the input.
-    let range = measure::curvature_range(&elements);
-    let [least, largest] = range.map_or([f64::NAN; 2], |range| range.map(|place| place.signed_curvature));
-    let status = match report.status {
-        Status::Converged if range.is_err() => Status::Stalled,
-        status => status,
-    };
-    Ok(Solution {
-        status,
-        iterations: report.iterations,
-        linearisations: report.linearisations,
-        functional: options.functional,
-        // One element a span is never compared with more.
-        error: Some(report.error)
-            .filter(|error| options.has_tolerance() && options.elements_per_span > 1 && error.is_finite()),
-        value: report.value,
-        fine_value: report.fine_value,
-        length: report.length,
-        variation: report.variation,
-        bending: report.bending,
-        gradient: report.gradient,
-        curvature_min: least,
-        curvature_max: largest,
-        starts: spans::starts(specification, &elements, options),
-        elements,
+    work(&curve, &kernel_options).map_err(|error| {
+        let apart = first_apart(&error, &curve, &kernel_options);
+        Error::of(error, specification, options, apart)
     })
+}
+
+/// The first obstacle that does not lie in one plane with the joints and the obstacles before it, if that may be the error.
+fn first_apart(error: &CurveError, curve: &Curve<'_>, options: &curve::Options) -> Option<usize> {
+    if !matches!(error, CurveError::ObstaclesNotPossible | CurveError::NotPlanar) {
+        return None;
+    }
+    let counts: Vec<usize> = (0..=curve.obstacles.len()).collect();
+    let possible = counts.partition_point(|&count| {
+        let some = curve.with_obstacles(&curve.obstacles[..count]);
+        curve::workspace_len(&some, options) != Err(*error)
+    });
+    possible.checked_sub(1)
+}
+
+impl Solution {
+    /// What the kernel found: the elements that the report counts.
+    fn new(specification: &Specification, options: &Options, report: &Report, elements: &[Element]) -> Self {
+        let elements = elements[..report.elements].to_vec();
+        // A curve that stops somewhere has no curvature there: a matter of its status, not of the input.
+        let range = measure::curvature_range(&elements);
+        let [least, largest] = range.map_or([f64::NAN; 2], |range| range.map(|place| place.signed_curvature));
+        Self {
+            status: match report.status {
+                Status::Converged if range.is_err() => Status::Stalled,
+                status => status,
+            },
+            iterations: report.iterations,
+            linearisations: report.linearisations,
+            functional: options.functional,
+            // One element a span is never compared with more.
+            error: Some(report.error).filter(|error| {
+                options.has_tolerance() && options.elements_per_span > 1 && error.is_finite()
+            }),
+            value: report.value,
+            fine_value: report.fine_value,
+            length: report.length,
+            variation: report.variation,
+            bending: report.bending,
+            gradient: report.gradient,
+            curvature_min: least,
+            curvature_max: largest,
+            starts: spans::starts(specification, &elements, options),
+            elements,
+        }
+    }
 }
 
 fn quantity(given: &Given) -> Quantity {
@@ -252,8 +313,9 @@ fn joint(named: &NamedJoint) -> Joint {
 }
 
 impl Error {
-    /// The kernel's error with the joints' and options' names as the user wrote them.
-    fn of(error: CurveError, specification: &Specification, options: &Options) -> Self {
+    /// The kernel's error with the joints' and options' names as the user wrote them. `apart`: the obstacle that does not lie
+    /// in the joints' plane.
+    fn of(error: CurveError, specification: &Specification, options: &Options, apart: Option<usize>) -> Self {
         let joint = match error {
             CurveError::NotFinite { joint, .. }
             | CurveError::UnknownCode { joint, .. }
@@ -265,8 +327,19 @@ impl Error {
             | CurveError::SidesDiffer { joint, .. } => Some(joint),
             _ => None,
         };
+        let obstacle = match error {
+            CurveError::BadObstacle { obstacle } => Some(obstacle),
+            _ => apart,
+        };
         let name = |joint: usize| specification.joints.get(joint).map_or("?", |named| named.name.as_str());
         let reference = options.reference.as_ref().map_or("?", |shape| shape.name.as_str());
+        let never = [
+            (options.has_tolerance(), "--tolerance"),
+            (options.length > 0.0, "--length"),
+            (options.reference.is_some(), "--reference"),
+            (options.dimension == 3, "--dimension 3"),
+        ];
+        let never = never.into_iter().find_map(|(given, option)| given.then_some(option));
         let message = match error {
             CurveError::CoincidentJoints { joint, next } => {
                 format!(
@@ -292,6 +365,15 @@ impl Error {
             CurveError::BadElement { element } => format!(
                 "--reference {reference}: element {element} has a number that is not finite, or no direction at an end"
             ),
+            CurveError::BadObstacle { obstacle } => {
+                error.to_string().replace(&format!("obstacle {obstacle}"), "this obstacle")
+            }
+            CurveError::ObstaclesNotPossible | CurveError::NotPlanar if apart.is_some() => match never {
+                Some(option) => format!("obstacles cannot be combined with {option}"),
+                None => "this obstacle does not lie in one plane with the joints: only a planar curve keeps clear of \
+                         obstacles"
+                    .to_owned(),
+            },
             other => match joint {
                 Some(joint) => {
                     other.to_string().replace(&format!("joint {joint}"), &format!("joint {}", name(joint)))
@@ -299,7 +381,12 @@ impl Error {
                 None => other.to_string(),
             },
         };
-        Self { message, joint }
+        let joint = joint.and_then(|joint| specification.joints.get(joint));
+        let obstacle = obstacle.and_then(|obstacle| specification.obstacles.get(obstacle));
+        let place = joint
+            .map(|joint| [joint.line, joint.column])
+            .or(obstacle.map(|obstacle| [obstacle.line, obstacle.column]));
+        Self { message, place }
     }
 }
 

@@ -8,6 +8,9 @@ use std::process::{Command, Output, Stdio};
 const WICKET: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/curves/wicket.mvc");
 const WOODFORD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/curves/woodford.mvc");
 const COVING_SLIDE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/curves/coving_slide.mvc");
+const COVING_CLEAR: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/curves/coving_clear.mvc");
+const PETERS_HELIX: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/curves/peters_helix.mvc");
+const LOOP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/curves/loop.mvc");
 const ANTIPODAL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/curves/antipodal_s.mvc");
 
 fn minvar(folder: &Path) -> Command {
@@ -87,6 +90,12 @@ fn help_goes_to_the_standard_output() {
     let words = [
         "si-mvc:",
         "si-mec:",
+        "space-mvc:",
+        "space-mec:",
+        "--minima <N>",
+        "--minimum <K>",
+        "(Obstacle Left 0.25 (6,-6,0))",
+        "(Obstacle Right 0.25 (0,1,0) (3,1,0))",
         "--tension <W>",
         "--bending <W>",
         "--length <L>",
@@ -383,4 +392,192 @@ fn a_curvature_of_given_size_keeps_it() {
             .expect("kappa");
         assert!((kappa - 0.3).abs() < 1e-12, "{value}: {kappa}");
     }
+}
+
+/// How far a curve's samples lie from the duct, `x` 0 to 6 and `y` 0 to -6; negative inside.
+fn from_the_duct(csv: &str) -> f64 {
+    let number = |cell: &str| cell.parse::<f64>().expect("a number");
+    let distance = |line: &str| {
+        let cells: Vec<_> = line.split(',').collect();
+        let (right, below) = (number(cells[3]) - 6.0, -6.0 - number(cells[4]));
+        if right > 0.0 || below > 0.0 { right.max(0.0).hypot(below.max(0.0)) } else { right.max(below) }
+    };
+    csv.lines().skip(1).map(distance).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn a_curve_keeps_clear_of_the_files_obstacles() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for per_span in ["1", "8"] {
+        let outputs = ["--csv", "a.csv", "--svg", "a.svg", "--samples", "201"];
+        let mut command = minvar(folder.path());
+        let (code, out, error) =
+            run(command.args([COVING_CLEAR, "--elements-per-span", per_span]).args(outputs));
+        assert_eq!((code, error.as_str()), (0, ""), "{out}");
+        let read = |name: &str| fs::read_to_string(folder.path().join(name)).expect(name);
+        let clearance = from_the_duct(&read("a.csv"));
+        assert!((clearance - 0.25).abs() < 1e-9, "{clearance}");
+        assert!(read("a.svg").contains("class=\"clearance\""));
+    }
+    // On the other side there is nothing to keep clear of, and without obstacles the corner is cut off.
+    let text = fs::read_to_string(COVING_CLEAR).expect("the coving");
+    let free = text.lines().filter(|line| !line.starts_with("(Obstacle")).collect::<Vec<_>>().join("\n");
+    let plain: String = free.clone() + "\n";
+    fs::write(folder.path().join("plain.mvc"), plain).expect("a file");
+    let (code, out, _) = run(minvar(folder.path()).args(["plain.mvc", "--quiet", "--csv", "-"]));
+    assert!(code == 0 && from_the_duct(&out) < -1.0, "{}", from_the_duct(&out));
+    fs::write(folder.path().join("right.mvc"), free + "(Obstacle Right 0.25 (6,-6,0))").expect("a file");
+    let (code, right, _) = run(minvar(folder.path()).args(["right.mvc", "--quiet", "--csv", "-"]));
+    assert!(code == 0 && right == out, "a duct to the right is clear already");
+}
+
+#[test]
+fn joints_are_marked_where_they_are_among_contacts() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let woodford = fs::read_to_string(WOODFORD).expect("Woodford's points");
+    fs::write(folder.path().join("a.mvc"), woodford + "(Obstacle Right 0.1 (0.3,0.8,0))").expect("a file");
+    let options = ["--elements-per-span", "3", "--svg", "a.svg", "--json", "a.json"];
+    let (code, out, error) = run(minvar(folder.path()).arg("a.mvc").args(options));
+    assert_eq!((code, error.as_str()), (0, ""));
+    assert!(out.contains(" 7 joints, 21 elements\n"), "one contact in the first span: {out}");
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).expect(name);
+    let (svg, json) = (read("a.svg"), read("a.json"));
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    let picture = roxmltree::Document::parse(&svg).expect("XML");
+    let stations: Vec<f64> = picture
+        .descendants()
+        .filter(|node| node.attribute("class") == Some("station"))
+        .map(|line| line.attribute("x1").and_then(|x| x.parse().ok()).expect("x1"))
+        .collect();
+    // The chords of the elements tell about where along the curve joint b is: at the end of six of them.
+    let chord = |element: &serde_json::Value| -> f64 {
+        let [x, y] = [0, 1].map(|d| number(&element[5][d]) - number(&element[0][d]));
+        x.hypot(y)
+    };
+    let elements = json["elements"].as_array().expect("elements");
+    assert_eq!(elements[6][0], serde_json::json!([1.0, 1.9, 0.0]));
+    let part = elements[..6].iter().map(chord).sum::<f64>() / elements.iter().map(chord).sum::<f64>();
+    let shown = (stations[1] - stations[0]) / (stations[6] - stations[0]);
+    assert!((part - shown).abs() < 0.01, "{part} {shown}");
+}
+
+#[test]
+fn obstacles_that_are_not_possible_are_shown_where_they_stand() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let refused = |arguments: &[&str]| {
+        let (code, out, error) = run(minvar(folder.path()).args(arguments));
+        assert_eq!((code, out.as_str()), (2, ""), "{arguments:?}");
+        error
+    };
+    let write = |name: &str, to: &str| {
+        let text = fs::read_to_string(COVING_CLEAR).expect("the coving").replace("(6,0,0)", to);
+        fs::write(folder.path().join(name), text).expect("a file");
+    };
+    write("clear.mvc", "(6,0,0)");
+    run(minvar(folder.path()).args(["clear.mvc", "--quiet", "--json", "r.json"]));
+    for (option, value) in [("--tolerance", "1e-3"), ("--length", "30"), ("--reference", "r.json")] {
+        let error = refused(&["clear.mvc", option, value]);
+        let words = format!("error: obstacles cannot be combined with {option}\n --> clear.mvc:5:1\n");
+        assert!(error.starts_with(&words), "{error}");
+    }
+    let error = refused(&["clear.mvc", "--dimension", "3"]);
+    assert!(
+        error.starts_with("error: obstacles cannot be combined with --dimension 3\n --> clear.mvc:5:1\n")
+    );
+    write("apart.mvc", "(6,0,1)");
+    for options in [&["apart.mvc"][..], &["apart.mvc", "--dimension", "2"]] {
+        let error = refused(options);
+        let words = "error: this obstacle does not lie in one plane with the joints: ";
+        assert!(error.starts_with(words) && error.contains(" --> apart.mvc:6:1\n"), "{error}");
+    }
+    write("far.mvc", "(6,1e150,0)");
+    let error = refused(&["far.mvc"]);
+    assert!(
+        error.starts_with("error: this obstacle has a number that is not finite or beyond 1e100")
+            && error.contains(" --> far.mvc:6:1\n"),
+        "{error}"
+    );
+    let space = "(G2Joint a (0,0,0))(G2Joint b (1,1,0))(G2Joint c (2,0,1))(G2Joint d (3,1,0))(G2Curve c Open (a,b,c,d))";
+    fs::write(folder.path().join("space.mvc"), format!("{space}\n(Obstacle Left 1 (0,5,0))"))
+        .expect("a file");
+    let error = refused(&["space.mvc", "--dimension", "2"]);
+    assert!(error.starts_with("error: a planar curve was asked for but the data do not lie"), "{error}");
+}
+
+#[test]
+fn minima_are_listed_the_lowest_first_and_one_is_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let listed = |arguments: &[&str]| {
+        let (code, out, error) =
+            run(minvar(folder.path()).args([LOOP, "--elements-per-span", "2"]).args(arguments));
+        assert_eq!((code, error.as_str()), (0, ""), "{arguments:?}");
+        let table: Vec<Vec<String>> = out
+            .lines()
+            .skip_while(|line| !line.starts_with("  minimum"))
+            .skip(1)
+            .map(|line| line.split_whitespace().map(str::to_owned).collect())
+            .collect();
+        let written = out.lines().find_map(|line| line.strip_prefix("variation   ")).map(str::to_owned);
+        (table, written.expect("the figures"))
+    };
+    assert_eq!(listed(&[]).0, Vec::<Vec<String>>::new());
+    let (table, written) = listed(&["--minima", "8"]);
+    assert!(table.len() >= 2, "with and without a loop: {table:?}");
+    assert!(table[0][0] == ">" && table[0][1] == "1" && table[0][3] == written, "{table:?} {written}");
+    let value = |row: &[String]| row[row.len() - 5].parse::<f64>().expect("a value");
+    assert!(table.windows(2).all(|pair| value(&pair[0]) < value(&pair[1])), "{table:?}");
+    assert!(table.iter().all(|row| row[row.len() - 1] == "converged"), "{table:?}");
+
+    let one = listed(&["--minima", "1"]).0;
+    assert!(one.len() == 1 && value(&one[0]) == value(&table[0]), "{one:?}");
+    let (second, written) = listed(&["--minima", "8", "--minimum", "2", "--json", "a.json"]);
+    assert!(second[0][0] == "1" && second[1][0] == ">" && second[1][3] == written, "{second:?} {written}");
+    let json = fs::read_to_string(folder.path().join("a.json")).expect("JSON");
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    assert!((number(&json["value"]) / value(&table[1]) - 1.0).abs() < 1e-8, "the second is written");
+
+    let mut command = minvar(folder.path());
+    let (code, out, error) =
+        run(command.args([WOODFORD, "--minima", "3", "--minimum", "2", "--json", "b.json"]));
+    assert_eq!((code, out.as_str(), error.as_str()), (2, "", "error: --minimum 2: 1 minimum was found\n"));
+    assert_eq!(names(folder.path()), ["a.json"]);
+    for wrong in [&["--minimum", "1"][..], &["--minima", "0"], &["--minima", "2", "--minimum", "0"]] {
+        assert_eq!(run(minvar(folder.path()).arg(WOODFORD).args(wrong)).0, 2, "{wrong:?}");
+    }
+    // Where nothing converges there is no minimum to list, whichever is asked for.
+    let (code, out, error) = run(minvar(folder.path()).args([ANTIPODAL, "--minima", "3", "--minimum", "2"]));
+    assert!(code == 1 && out.contains("\nstatus      unbounded") && !out.contains("minimum"), "{out}");
+    assert!(error.starts_with("warning: unbounded:"), "{error}");
+}
+
+#[test]
+fn space_functionals_count_torsion_and_are_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let formulas = [("space-mvc", "∫ (dκ/ds)² + (dτ/ds)² ds"), ("Space-MEC", "∫ κ² + τ² ds")];
+    for (functional, formula) in formulas {
+        let mut command = minvar(folder.path());
+        let (code, out, error) = run(command.args([
+            PETERS_HELIX,
+            "--functional",
+            functional,
+            "--svg",
+            "a.svg",
+            "--json",
+            "a.json",
+        ]));
+        assert_eq!((code, error.as_str()), (0, ""));
+        let name = functional.to_lowercase();
+        assert!(out.contains(&format!("\nfunctional  {name} = ")), "{out}");
+        let read = |name: &str| fs::read_to_string(folder.path().join(name)).expect(name);
+        assert!(read("a.svg").contains(formula), "{functional}");
+        let json: serde_json::Value = serde_json::from_str(&read("a.json")).expect("JSON");
+        assert_eq!(json["functional"], serde_json::json!(name));
+        let plain = number(&json[if name == "space-mvc" { "variation" } else { "bending" }]);
+        assert!((number(&json["value"]) - plain).abs() > 1e-3, "torsion counts: {json}");
+    }
+    // In a plane there is no torsion.
+    let of = |functional: &str| {
+        number(&json(minvar(folder.path()).args([WOODFORD, "--functional", functional]))["value"])
+    };
+    assert_eq!((of("space-mvc"), of("space-mec")), (of("mvc"), of("mec")));
 }

@@ -60,7 +60,8 @@ pub enum minvar_code {
     /// An element of the reference shape, of the start or beside a region is not finite or has no direction at an end.
     /// `index`: the element.
     MINVAR_BAD_REFERENCE = 28,
-    /// An obstacle has a number that is not finite, a negative clearance or an unknown side. `index`: the obstacle.
+    /// An obstacle has a number that is not finite or beyond 1e100, a negative clearance or an unknown side. `index`: the
+    /// obstacle.
     MINVAR_BAD_OBSTACLE = 29,
     /// Obstacles need a planar curve, without a tolerance, a reference shape, a given length or a warm start.
     MINVAR_OBSTACLES_NOT_POSSIBLE = 30,
@@ -108,7 +109,7 @@ use minvar_code::*;
 pub struct minvar_error {
     /// The code, as returned.
     pub code: minvar_code,
-    /// The joint, element or option, from 0, that is to blame, where the code says so; else 0.
+    /// The joint, element, obstacle or option, from 0, that is to blame, where the code says so; else 0.
     pub index: usize,
     /// How many entries are needed, where the code says so; else 0.
     pub needed: usize,

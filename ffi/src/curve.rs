@@ -98,7 +98,7 @@ pub struct minvar_joint {
 #[derive(Clone, Copy)]
 pub enum minvar_side {
     /// The obstacle lies to the left of the curve: about the plane's normal, which is +z, +x or +y where the data lie in a
-    /// coordinate plane.
+    /// coordinate plane and else has its largest coordinate positive.
     MINVAR_LEFT = 0,
     /// The obstacle lies to the right of the curve.
     MINVAR_RIGHT = 1,
@@ -219,7 +219,8 @@ pub struct minvar_report {
     pub status: minvar_status,
     /// 1 if the curve was computed in a plane, 0 in space.
     pub planar: i32,
-    /// How many elements the curve has: as many as minvar_curve_elements_len() says, or fewer with a tolerance.
+    /// How many elements the curve has: as many as minvar_curve_elements_len() says, or fewer with a tolerance or
+    /// obstacles.
     pub elements: usize,
     /// The number of iterations: trial steps, accepted or not.
     pub iterations: usize,
@@ -421,8 +422,8 @@ pub extern "C" fn minvar_joint_with_continuity(joint: minvar_joint, continuity: 
     minvar_joint { continuity, ..joint }
 }
 
-/// The curve through `joint_count` joints, without a reference shape or obstacles; `closed` as in minvar_curve. The joints stay the
-/// caller's.
+/// The curve through `joint_count` joints, without a reference shape or obstacles; `closed` as in minvar_curve. The joints
+/// stay the caller's.
 #[unsafe(no_mangle)]
 pub extern "C" fn minvar_curve_through(
     joints: *const minvar_joint,
@@ -442,9 +443,8 @@ pub extern "C" fn minvar_curve_through(
 }
 
 /// The number of elements that a curve will have, or with a tolerance or obstacles the most that it may have (an obstacle
-/// counts as four spans): spans times `elements_per_span`, with one span fewer than joints of
-/// an open curve and as many as joints of a closed one. Data and options are not checked otherwise; 0 if a pointer is
-/// NULL or misaligned.
+/// counts as four spans): spans times `elements_per_span`, with one span fewer than joints of an open curve and as many as
+/// joints of a closed one. Data and options are not checked otherwise; 0 if a pointer is NULL or misaligned.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn minvar_curve_elements_len(
     curve: *const minvar_curve,
@@ -539,9 +539,9 @@ fn ours(report: &minvar_report) -> Report {
 ///
 /// `workspace`: `workspace_len` doubles, at least what minvar_curve_workspace_len() says, in any condition; what is left
 /// in it afterwards means nothing. `observer` may be NULL. `elements` receives minvar_curve_elements_len() elements in
-/// order along the curve, or with a tolerance as many as `report->elements` says; `elements_len` is the room. `records`
-/// (may be NULL with `records_len` 0) receives a record an iteration as far as it reaches. What lies beyond in either array
-/// is left alone. The arrays must not overlap.
+/// order along the curve, or with a tolerance or obstacles as many as `report->elements` says; `elements_len` is the room.
+/// `records` (may be NULL with `records_len` 0) receives a record an iteration as far as it reaches. What lies beyond in
+/// either array is left alone. The arrays must not overlap.
 ///
 /// Fixed positions and tangent directions are kept exactly; planar data give a curve in their plane.
 ///

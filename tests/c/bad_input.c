@@ -291,6 +291,34 @@ static void curve_functions(void) {
         REFUSED_CURVE(MINVAR_BAD_OPTION, 6, "relative_decrease");
     }
 
+    static minvar_obstacle obstacles_room[2];
+    const minvar_obstacle good = {{1, 2, 0}, {2, 2, 0}, 0.25, MINVAR_LEFT};
+    obstacles_room[0] = obstacles_room[1] = good;
+    data.obstacles = obstacles_room;
+    data.obstacle_count = 2;
+    ARRAY(const minvar_obstacle, data.obstacles, data.obstacle_count, WORKSPACE_LEN, "curve->obstacles");
+    reset();
+#define REFUSED_OBSTACLE(change, wanted, at, word) \
+    do { \
+        data.obstacles = obstacles_room; \
+        data.obstacle_count = 2; \
+        change; \
+        REFUSED_CURVE(wanted, at, word); \
+        obstacles_room[1] = good; \
+    } while (0)
+    REFUSED_OBSTACLE(obstacles_room[1].clearance = -1, MINVAR_BAD_OBSTACLE, 1, "obstacle 1");
+    REFUSED_OBSTACLE(obstacles_room[1].side = 2, MINVAR_BAD_OBSTACLE, 1, "obstacle 1");
+    for (int bad = 0; bad < 3; bad++) {
+        REFUSED_OBSTACLE(obstacles_room[1].clearance = BAD[bad], MINVAR_BAD_OBSTACLE, 1, "obstacle 1");
+        for (int d = 0; d < 3; d++) {
+            REFUSED_OBSTACLE(obstacles_room[1].from[d] = BAD[bad], MINVAR_BAD_OBSTACLE, 1, "obstacle 1");
+            REFUSED_OBSTACLE(obstacles_room[1].to[d] = BAD[bad], MINVAR_BAD_OBSTACLE, 1, "obstacle 1");
+        }
+    }
+    REFUSED_OBSTACLE(obstacles_room[1].to[2] = 1, MINVAR_OBSTACLES_NOT_POSSIBLE, 0, "planar");
+    REFUSED_OBSTACLE(options_data.tolerance = 1e-3, MINVAR_OBSTACLES_NOT_POSSIBLE, 0, "tolerance");
+    REFUSED_OBSTACLE(options_data.length = 9, MINVAR_OBSTACLES_NOT_POSSIBLE, 0, "length");
+
     /* Buffers one too short, and just long enough. */
     size_t needed = 0;
     WORKS(minvar_curve_workspace_len(curve, options, &needed, e));
@@ -725,7 +753,8 @@ static void completeness(void) {
         MINVAR_BAD_FEED,           MINVAR_BAD_PLUNGE_FEED,
         MINVAR_BAD_DEPTH,          MINVAR_BAD_SAFE_HEIGHT,
         MINVAR_COORDINATE_TOO_LARGE, MINVAR_BAD_REGION,
-        MINVAR_BAD_REFERENCE,
+        MINVAR_BAD_REFERENCE,        MINVAR_BAD_OBSTACLE,
+        MINVAR_OBSTACLES_NOT_POSSIBLE,
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         if (!seen[all[i]]) {

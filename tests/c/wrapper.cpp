@@ -16,6 +16,7 @@ using minvar::Curve;
 using minvar::GcodeOptions;
 using minvar::Given;
 using minvar::Joint;
+using minvar::Obstacle;
 using minvar::Options;
 using minvar::Region;
 using minvar::Side;
@@ -209,6 +210,120 @@ void solving() {
     const Solution taken = solver.take();
     CHECK(same(taken.elements, eight.elements) && solver.solution().elements.empty());
     CHECK(same(solver.solve(joints, false, options).elements, eight.elements));
+}
+
+/// The duct of the coving: its two faces, to the left of the curve.
+std::vector<Obstacle> duct(double clearance) {
+    return {Obstacle::segment({0, -6, 0}, {6, -6, 0}, clearance, Obstacle::Side::Left),
+            Obstacle::segment({6, -6, 0}, {6, 0, 0}, clearance, Obstacle::Side::Left)};
+}
+
+void obstacles() {
+    const minvar_obstacle point = Obstacle::point({1, 2, 3}, 0.5, Obstacle::Side::Right).data();
+    CHECK(point.from[2] == 3 && point.to[0] == 1 && point.to[1] == 2 && point.clearance == 0.5);
+    CHECK(point.side == MINVAR_RIGHT && duct(0)[1].data().from[0] == 6 && duct(0)[1].data().to[1] == 0);
+    CHECK(duct(0)[0].data().side == MINVAR_LEFT && duct(0)[0].data().from[0] == 0);
+
+    const minvar::Vec corner = {6, -6, 0};
+    const auto distance = [&](const Solution &solution) {
+        const minvar::Point nearest = Curve(solution.elements).closest(corner);
+        return std::hypot(nearest.point[0] - corner[0], nearest.point[1] - corner[1]);
+    };
+    Solver solver;
+    Options options = with_elements(4);
+    const Solution free = solver.solve(coving_joints(), false, options);
+    for (const double clearance : {0.25, 0.5}) {
+        options.obstacles = duct(clearance);
+        const Solution &clear = solver.solve(coving_joints(), false, options);
+        CHECK(clear.converged() && clear.elements.size() == 8 && clear.report.value > free.report.value);
+        NEAR(distance(clear), clearance, 1e-9);
+    }
+    // No more allocations after the first of a kind, and without obstacles the curve is what it was.
+    const std::vector<Joint> joints = coving_joints();
+    const minvar::Observer nobody;
+    solver.solve(joints, false, options, nobody);
+    const std::size_t before = allocations;
+    solver.solve(joints, false, options, nobody);
+    CHECK(allocations == before);
+    options.obstacles.clear();
+    CHECK(same(solver.solve(joints, false, options).elements, free.elements));
+
+    options.obstacles = duct(0.25);
+    options.obstacles[1] = Obstacle::point(corner, -1, Obstacle::Side::Left);
+    try {
+        solver.solve(joints, false, options);
+        CHECK(!"thrown");
+    } catch (const minvar::Error &error) {
+        CHECK(error.code() == MINVAR_BAD_OBSTACLE && error.index() == 1);
+    }
+    options.obstacles = duct(0.25);
+    try {
+        solver.update(joints, false, options);
+        CHECK(!"thrown");
+    } catch (const minvar::Error &) {
+    }
+    CHECK(same(solver.solution().elements, free.elements));
+}
+
+void reference_shapes() {
+    const std::vector<Joint> joints = coving_joints();
+    Options energy = with_elements(2);
+    energy.functional = minvar::Functional::Mec;
+    const Solution shape = minvar::solve(joints, false, energy);
+    Options options = with_elements(2);
+    const double fairest = minvar::solve(joints, false, options).report.variation;
+    options.reference.elements = shape.elements;
+    const Solution kept = minvar::solve(joints, false, options);
+    CHECK(kept.converged() && kept.report.value < 1e-9 * shape.report.variation);
+    NEAR(kept.report.variation, shape.report.variation, 1e-5);
+    options.reference.weight = 0.5;
+    const Solution smoothed = minvar::solve(joints, false, options);
+    CHECK(smoothed.report.variation < kept.report.variation && smoothed.report.variation > fairest);
+    options.reference.elements.pop_back();
+    try {
+        minvar::solve(joints, false, options);
+        CHECK(!"thrown");
+    } catch (const minvar::Error &error) {
+        CHECK(error.code() == MINVAR_WRONG_ELEMENT_COUNT && error.details().needed == 2);
+    }
+}
+
+/// Thesis Fig. 4.9: the same data have a curve with a loop and one without.
+void several_minima() {
+    const std::vector<Joint> joints = {Joint::at({-1.5, 0, 0}).start_tangent({1, 0.1, 0}), Joint::at({-0.5, 0.5, 0}),
+                                       Joint::at({0, 1, 0}).start_tangent({-1, 0, 0}).fix_curvature({0, -10, 0}),
+                                       Joint::at({0.5, 0.5, 0}), Joint::at({1.5, 0, 0}).start_tangent({1, -0.1, 0})};
+    Solver solver;
+    const Solution usual = solver.solve(joints, false, with_elements(2));
+    const std::vector<Solution> all = solver.minima(joints, 8, false, with_elements(2));
+    CHECK(same(solver.solution().elements, usual.elements));
+    CHECK(all.size() >= 2);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        CHECK(all[i].converged() && all[i].elements.size() == 8 && all[i].records.empty());
+        NEAR(Curve(all[i].elements).variation(), all[i].report.variation, 1e-9);
+        CHECK(i == 0 || all[i - 1].report.value < all[i].report.value);
+    }
+    const std::vector<Solution> one = minvar::minima(joints, 1, false, with_elements(2));
+    CHECK(one.size() == 1 && !all.empty() && same(one[0].elements, all[0].elements));
+    // With an obstacle each minimum has its own number of elements.
+    Options options = with_elements(2);
+    options.obstacles = duct(0.25);
+    const std::vector<Solution> clear = minvar::minima(coving_joints(), 3, false, options);
+    CHECK(!clear.empty() && clear[0].elements.size() == clear[0].report.elements && clear[0].elements.size() == 4);
+    // The observer stops the search, and its exceptions come through.
+    CHECK(minvar::minima(joints, 2, false, {}, [](std::size_t, const minvar::Record &) { return false; }).empty());
+    try {
+        minvar::minima(joints, 2, false, {}, [](std::size_t, const minvar::Record &) -> bool { throw 7; });
+        CHECK(!"thrown");
+    } catch (int seven) {
+        CHECK(seven == 7);
+    }
+    try {
+        minvar::minima({}, 2);
+        CHECK(!"thrown");
+    } catch (const minvar::Error &error) {
+        CHECK(error.code() == MINVAR_TOO_FEW_JOINTS);
+    }
 }
 
 void closed_and_cornered() {
@@ -432,6 +547,9 @@ int main() {
         joints();
         options();
         solving();
+        obstacles();
+        reference_shapes();
+        several_minima();
         closed_and_cornered();
         regions();
         measuring();

@@ -173,6 +173,20 @@ fn header() -> String {
     fs::read_to_string(root().join("include/minvar.h")).expect("include/minvar.h")
 }
 
+#[test]
+fn every_enum_that_a_comment_names_is_declared() {
+    let header = header();
+    let names: BTreeSet<&str> = header
+        .split("One of enum ")
+        .skip(1)
+        .filter_map(|rest| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next())
+        .collect();
+    assert!(names.len() > 5, "{names:?}");
+    for name in names {
+        assert!(header.contains(&format!("typedef enum {name} {{")), "{name} is not in minvar.h");
+    }
+}
+
 /// The functions that the header declares.
 fn declared() -> BTreeSet<String> {
     let name = |line: &str| {

@@ -1,4 +1,4 @@
-//! From words to joints and a curve as they are written.
+//! From words to joints, obstacles and a curve as they are written.
 
 use super::fault::{did_you_mean, quote};
 use super::position::SLIDING;
@@ -7,6 +7,9 @@ use super::words::{Kind, Place, Word, Words};
 use super::{Continuity, Fault, Given, NamedJoint};
 
 pub(super) type Parsed<T> = Result<T, Box<Fault>>;
+
+/// What a form begins with.
+const HEADS: [&str; 5] = ["G2Joint", "G1Joint", "G0Joint", "G2Curve", "Obstacle"];
 
 /// Reads the forms of a file, up to the first that is wrong.
 pub(super) fn forms(text: &str) -> Parsed<Written<'_>> {
@@ -25,6 +28,7 @@ pub(super) fn forms(text: &str) -> Parsed<Written<'_>> {
             "g0joint" => written.joints.push(parser.joint(open, Continuity::G0)?),
             "g1joint" => written.joints.push(parser.joint(open, Continuity::G1)?),
             "g2joint" => written.joints.push(parser.joint(open, Continuity::G2)?),
+            "obstacle" => written.obstacles.push(parser.obstacle(open)?),
             "g2curve" => {
                 let curve = parser.curve(open)?;
                 if let Some(first) = &written.curve {
@@ -86,8 +90,14 @@ impl<'a> Parser<'a> {
         self.fault(open, format!("a `)` is missing: the file ends inside {what}"))
     }
 
+    /// A form begins within another.
+    pub(super) fn still_open(&self, open: Word<'_>, inner: Word<'_>, what: &str) -> Box<Fault> {
+        let message = format!("a `)` is missing before this form: {what} is still open");
+        self.fault(inner, message).earlier(self.text, open.place, "it begins here")
+    }
+
     fn stray(&self, word: Word<'_>) -> Box<Fault> {
-        let fault = self.expected("`(` to begin a joint or a curve", word);
+        let fault = self.expected("`(` to begin a joint, an obstacle or a curve", word);
         match word.text {
             "-" | "*" | "•" => fault.help("list markers are not part of the format: take it away"),
             _ => fault.help("a comment begins with `;` or `#`"),
@@ -95,7 +105,6 @@ impl<'a> Parser<'a> {
     }
 
     fn unknown_head(&self, open: Word<'_>, head: Word<'_>) -> Box<Fault> {
-        const HEADS: [&str; 4] = ["G2Joint", "G1Joint", "G0Joint", "G2Curve"];
         match head.kind {
             Kind::End => self.unclosed(open, "this form"),
             Kind::Text => {
@@ -104,12 +113,11 @@ impl<'a> Parser<'a> {
                     "g0curve" | "g1curve" => fault
                         .help("a curve is always `G2Curve`; its joints say what is continuous (`G1Joint`, `G0Joint`)"),
                     _ => fault.help(
-                        did_you_mean(head.text, HEADS)
-                            .unwrap_or("a form begins with G2Joint, G1Joint, G0Joint or G2Curve".to_owned()),
+                        did_you_mean(head.text, HEADS).unwrap_or_else(|| format!("a form begins with {}", heads())),
                     ),
                 }
             }
-            _ => self.expected("G2Joint, G1Joint, G0Joint or G2Curve", head),
+            _ => self.expected(&heads(), head),
         }
     }
 
@@ -169,10 +177,7 @@ impl<'a> Parser<'a> {
             "fixed" => Given::Fixed,
             "initial" => Given::Initial,
             "size" => Given::Size,
-            "g0joint" | "g1joint" | "g2joint" | "g2curve" => {
-                let message = format!("a `)` is missing before this form: {what} is still open");
-                return Err(self.fault(inner, message).earlier(self.text, open.place, "it begins here"));
-            }
+            _ if is_head(status) => return Err(self.still_open(open, inner, what)),
             lower => {
                 let fault = match status.kind {
                     Kind::End => return Err(self.unclosed(open, what)),
@@ -383,11 +388,21 @@ impl<'a> Parser<'a> {
     }
 }
 
-fn describe(word: Word<'_>) -> String {
+pub(super) fn describe(word: Word<'_>) -> String {
     match word.kind {
         Kind::End => "the end of the file".to_owned(),
         _ => quote(word.text),
     }
+}
+
+/// Whether a form begins with this word.
+pub(super) fn is_head(word: Word<'_>) -> bool {
+    is_any(word.text, &HEADS)
+}
+
+fn heads() -> String {
+    let [others @ .., last] = HEADS;
+    format!("{} or {last}", others.join(", "))
 }
 
 fn is_any(word: &str, keywords: &[&str]) -> bool {

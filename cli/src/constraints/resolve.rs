@@ -3,13 +3,14 @@
 use super::fault::{did_you_mean, quote};
 use super::parse::Parsed;
 use super::words::{Place, Word, place_of};
-use super::{Fault, NamedJoint, Reading, Specification};
+use super::{Fault, NamedJoint, PlacedObstacle, Reading, Specification};
 use std::collections::HashMap;
 
 /// What a file holds, in its own order.
 #[derive(Default)]
 pub(super) struct Written<'a> {
     pub(super) joints: Vec<Joint>,
+    pub(super) obstacles: Vec<PlacedObstacle>,
     pub(super) curve: Option<Curve<'a>>,
 }
 
@@ -33,7 +34,7 @@ const MOST_WARNINGS: usize = 5;
 
 /// Puts the joints into the curve's order.
 pub(super) fn resolve(text: &str, written: Written<'_>) -> Parsed<Reading> {
-    let Written { joints, curve } = written;
+    let Written { joints, obstacles, curve } = written;
     let mut by_name = HashMap::with_capacity(joints.len());
     for (index, joint) in joints.iter().enumerate() {
         if let Some(first) = by_name.insert(joint.value.name.as_str(), index) {
@@ -43,8 +44,11 @@ pub(super) fn resolve(text: &str, written: Written<'_>) -> Parsed<Reading> {
         }
     }
     let Some(curve) = curve else {
-        let message =
-            if joints.is_empty() { "this file is empty: it has no curve" } else { "this file has no curve" };
+        let message = if joints.is_empty() && obstacles.is_empty() {
+            "this file is empty: it has no curve"
+        } else {
+            "this file has no curve"
+        };
         let end = place_of(text, text.trim_end().len());
         return Err(
             Fault::error(text, end, message).help("a curve is `(G2Curve name Open (a,b,…))` or `Closed`")
@@ -70,7 +74,8 @@ pub(super) fn resolve(text: &str, written: Written<'_>) -> Parsed<Reading> {
 
     let mut joints: Vec<_> = joints.into_iter().map(|joint| Some(joint.value)).collect();
     let in_order = order.into_iter().filter_map(|index| joints[index].take()).collect();
-    let specification = Specification { name: curve.name.to_owned(), closed: curve.closed, joints: in_order };
+    let specification =
+        Specification { name: curve.name.to_owned(), closed: curve.closed, joints: in_order, obstacles };
     Ok(Reading { specification, warnings })
 }
 

@@ -3,6 +3,7 @@
 
 use super::Given::{Fixed, Free, Initial, OnLine, OnPlane, Size};
 use super::{Continuity, Fault, Reading, Specification, read};
+use minvar::curve::{Obstacle, Side};
 use std::time::{Duration, Instant};
 
 fn curve(text: &str) -> Specification {
@@ -197,6 +198,99 @@ fn a_size_that_is_wrong_is_named() {
         show(&bare)
     );
     assert_eq!(fault("(G2Joint a (0,0,0) (Sise Curvature 1))").help.as_deref(), Some("did you mean `Size`?"));
+}
+
+/// `check` on an obstacle before a curve of joints `a` and `b`.
+fn check_obstacle(obstacle: &str, column: usize, words: &str) {
+    let curve = "(G2Joint a (0,0,0))(G2Joint b (1,0,0))(G2Curve test Open (a,b))";
+    check(&format!("{obstacle}\n{curve}\n"), 1, column, words);
+}
+
+#[test]
+fn obstacles_stand_beside_the_joints() {
+    let got = curve(
+        "(Obstacle Left 0.25 (6,-6,0))
+         (G2Joint Left (0,0,0)) ; a name, not a side
+         (OBSTACLE right 0 (0,1,0)(3,1,-2.5))(obstacle LEFT 1e-3 (0,0,0))
+         (G2Joint b (1,0,0))
+         (G2Curve c Open (Left,b))
+         (Obstacle Right +2. (1,1,1) (1,1,1))",
+    );
+    let shapes: Vec<_> = got.obstacles.iter().map(|obstacle| obstacle.shape).collect();
+    assert_eq!(
+        shapes,
+        [
+            Obstacle::point([6.0, -6.0, 0.0], 0.25, Side::LEFT),
+            Obstacle::segment([0.0, 1.0, 0.0], [3.0, 1.0, -2.5], 0.0, Side::RIGHT),
+            Obstacle::point([0.0; 3], 1e-3, Side::LEFT),
+            Obstacle::point([1.0; 3], 2.0, Side::RIGHT),
+        ],
+        "in the file's order"
+    );
+    let places: Vec<_> = got.obstacles.iter().map(|obstacle| (obstacle.line, obstacle.column)).collect();
+    assert_eq!(places, [(1, 1), (3, 10), (3, 46), (6, 10)]);
+    let clear = figure("coving_clear");
+    assert_eq!(clear.obstacles[1].shape.to, [6.0, 0.0, 0.0]);
+    assert_eq!(figure("coving").obstacles, []);
+}
+
+#[test]
+fn an_obstacle_that_is_wrong_is_named() {
+    let side = "expected `Left` or `Right`, the side of the curve on which it stays, found";
+    check_obstacle("(Obstacle 0.25 (0,0,0))", 11, &format!("{side} `0.25`"));
+    check_obstacle("(Obstacle (0,0,0))", 11, side);
+    check_obstacle("(Obstacle Lefft 0.25 (0,0,0))", 11, side);
+    check_obstacle("(Obstacle)", 10, side);
+    check_obstacle("(Obstacle Left)", 15, "this obstacle has no clearance: found `)` in its place");
+    check_obstacle("(Obstacle Left (0,0,0))", 16, "this obstacle has no clearance: found `(` in its place");
+    check_obstacle("(Obstacle Left far (0,0,0))", 16, "this obstacle has no clearance: found `far`");
+    check_obstacle("(Obstacle Left -0.25 (0,0,0))", 16, "the clearance `-0.25` is negative");
+    check_obstacle("(Obstacle Left 1e999 (0,0,0))", 16, "`1e999` is not finite");
+    check_obstacle("(Obstacle Left nan (0,0,0))", 16, "`nan` is not finite");
+    check_obstacle("(Obstacle Left 0.2.5 (0,0,0))", 16, "`0.2.5` is not a number");
+    check_obstacle("(Obstacle Left 0.25)", 1, "this obstacle has no point");
+    check_obstacle(
+        "(Obstacle Left 0.25 0.5 (0,0,0))",
+        21,
+        "expected a point `(x,y,z)` of this obstacle, found `0.5`",
+    );
+    check_obstacle(
+        "(Obstacle Left 0.25 (0,0))",
+        21,
+        "a point of this obstacle has 2 coordinates and not three",
+    );
+    check_obstacle("(Obstacle Left 0.25 (0,0,0) (1,x,0))", 32, "`x` is not a number");
+    check_obstacle("(Obstacle Left 0.25 (0,0,0) 1)", 29, "expected a point `(x,y,z)` of this obstacle");
+    check_obstacle("(Obstacle Left 0.25 (0,0,0) (1,0,0) (1,1,0))", 37, "this obstacle has a third point");
+    check_obstacle(
+        "(Obstacle Left 0.25 (0,0,0) (1,0,0) 1)",
+        37,
+        "expected the `)` of this obstacle, found `1`",
+    );
+    let help = |text: &str| fault(text).help.unwrap_or_else(|| panic!("no help for {text}"));
+    assert_eq!(help("(Obstacle Rihgt 0.25 (0,0,0))"), "did you mean `Right`?");
+    assert_eq!(help("(Obstacel Left 0.25 (0,0,0))"), "did you mean `Obstacle`?");
+    assert_eq!(help("(Obstacle Left -1 (0,0,0))"), "which side is said by `Left` or `Right`");
+    assert!(help("(Obstacle Left 1 (0,0,0) (1,0,0) (2,0,0))").contains("one for each side"));
+    for text in ["(Obstacle (0,0,0))", "(Obstacle Left (0,0,0))", "(Obstacle Left 1)"] {
+        assert!(help(text).contains("`(Obstacle Left 0.25 (x,y,z) (x,y,z))` a segment"), "{text}");
+    }
+}
+
+#[test]
+fn an_obstacle_that_is_not_closed_is_found_where_it_begins() {
+    for text in ["", " Left", " Left 0.25", " Left 0.25 (0,0,0)", " Left 0.25 (0,0,0) (1,0,0)"] {
+        check(&format!("(Obstacle{text}"), 1, 1, "a `)` is missing: the file ends inside this obstacle");
+        let open = text.contains('(');
+        if open {
+            let words = "missing before this form: this obstacle is still open";
+            check(&format!("(Obstacle{text}\n(G2Joint b (1,0,0))"), 2, 1, words);
+            check(&format!("(Obstacle{text}\n(Obstacle Left 1 (1,0,0))"), 2, 1, words);
+        }
+    }
+    check("(Obstacle Left 1 (0,0,0) (1,0", 1, 26, "the file ends inside a point of this obstacle");
+    check("(G2Joint a (0,0,0)\n(Obstacle Left 1 (0,0,0))", 2, 1, "joint `a` is still open");
+    check("(Obstacle Left 1 (0,0,0))", 1, 26, "this file has no curve");
 }
 
 #[test]

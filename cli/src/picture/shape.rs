@@ -1,9 +1,9 @@
-//! The shape: curve, comb, joints and obstacles in their true proportions.
+//! The shape: curve, comb, joints, polygons and obstacles in their true proportions.
 
 use super::page::{Anchor, Page, Path, Spot, width};
 use super::scale::{Axis, Ticks, round_step};
 use super::view::View;
-use super::{LABEL, Picture, joints};
+use super::{LABEL, Picture, joints, obstacles};
 use crate::trace::{Sample, Trace, Vector, add, norm};
 use minvar::curve::Element;
 
@@ -135,9 +135,12 @@ fn tooth_factor(trace: &Trace, steepest: Option<f64>) -> Option<f64> {
 /// All that must be on the picture.
 fn content(picture: &Picture<'_>, trace: &Trace, tips: &[Vector]) -> Vec<Vector> {
     let points = trace.samples.iter().map(|sample| sample.point);
-    let obstacles = picture.obstacles.iter().flatten().copied();
+    let polygons = picture.polygons.iter().flatten().copied();
+    let obstacles = picture.obstacles.iter().flat_map(|obstacle| {
+        [obstacle.shape.from, obstacle.shape.to].into_iter().chain(obstacles::outline(&obstacle.shape, trace))
+    });
     let finite = |p: &Vector| p.iter().all(|x| x.is_finite());
-    points.chain(tips.iter().copied()).chain(obstacles).filter(finite).collect()
+    points.chain(tips.iter().copied()).chain(polygons).chain(obstacles).filter(finite).collect()
 }
 
 /// Draws the panel between `left` and `right` with its upper edge at `top` and gives its lower end.
@@ -158,11 +161,12 @@ pub(super) fn draw(
         None => room(page, &panel, trace),
     };
 
-    for obstacle in picture.obstacles {
-        let mut path = Path::polyline(obstacle.iter().map(|point| panel.spot(*point)));
+    for polygon in picture.polygons {
+        let mut path = Path::polyline(polygon.iter().map(|point| panel.spot(*point)));
         path.close();
-        page.path("obstacle", &path);
+        page.path("polygon", &path);
     }
+    obstacles::draw(page, picture.obstacles, trace, &panel);
     if let Some(factor) = tooth_factor(trace, steepest) {
         teeth(page, picture, trace, &panel, factor);
         for run in trace.samples.iter().zip(&tips).collect::<Vec<_>>().chunk_by(|(a, _), (b, _)| {

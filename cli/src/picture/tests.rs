@@ -2,9 +2,10 @@
 
 use super::page::width;
 use super::{Mark, Picture, Slide, svg};
+use crate::constraints::PlacedObstacle;
 use crate::trace::shapes::{circle, polynomial, quarter};
 use crate::trace::{Vector, add};
-use minvar::curve::Element;
+use minvar::curve::{Element, Obstacle, Side};
 use roxmltree::{Document, Node};
 
 fn marks(count: usize) -> Vec<Mark> {
@@ -19,10 +20,23 @@ fn marks(count: usize) -> Vec<Mark> {
     (0..count).map(mark).collect()
 }
 
-fn draw(elements: &[Element], closed: bool, obstacles: &[Vec<Vector>]) -> String {
+fn draw(elements: &[Element], closed: bool, polygons: &[Vec<Vector>]) -> String {
+    draw_with(elements, closed, polygons, &[])
+}
+
+fn draw_with(
+    elements: &[Element],
+    closed: bool,
+    polygons: &[Vec<Vector>],
+    obstacles: &[PlacedObstacle],
+) -> String {
     let joints = marks(if closed { elements.len() } else { elements.len() + 1 });
     let figures = ["value 1".to_owned()];
-    svg(&Picture { title: "t", figures: &figures, elements, closed, joints: &joints, obstacles })
+    svg(&Picture { title: "t", figures: &figures, elements, closed, joints: &joints, polygons, obstacles })
+}
+
+fn obstacle(from: Vector, to: Vector, clearance: f64) -> PlacedObstacle {
+    PlacedObstacle { shape: Obstacle::segment(from, to, clearance, Side::LEFT), line: 1, column: 1 }
 }
 
 fn line(a: Vector, b: Vector) -> Element {
@@ -54,7 +68,12 @@ fn all() -> Vec<(&'static str, String)> {
         ("line in space", draw(&[line([0.0; 3], [3.0, 1.0, 2.0])], false, &[])),
         ("point", draw(&[line(point, point)], false, &[])),
         ("screw", draw(&screw(9), false, &[])),
-        ("obstacle", draw(&[quarter(1.0)], false, &[vec![[0.0; 3], [0.5, 0.0, 0.0], [0.0, 0.5, 0.0]]])),
+        ("polygon", draw(&[quarter(1.0)], false, &[vec![[0.0; 3], [0.5, 0.0, 0.0], [0.0, 0.5, 0.0]]])),
+        ("obstacle", draw_with(&[quarter(1.0)], false, &[], &[obstacle([0.0; 3], [0.5, 0.0, 0.0], 0.1)])),
+        (
+            "obstacle without clearance",
+            draw_with(&[quarter(1.0)], false, &[], &[obstacle([0.0; 3], [0.0; 3], 0.0)]),
+        ),
         ("not a number", draw(&[Element { rows: [[f64::NAN; 3]; 6] }], false, &[])),
         ("infinite", draw(&[Element { rows: [[1e200; 3]; 6] }], false, &[])),
     ]
@@ -114,6 +133,7 @@ fn a_title_is_escaped() {
         elements: &elements,
         closed: false,
         joints: &joints,
+        polygons: &[],
         obstacles: &[],
     };
     let text = svg(&picture);
@@ -225,8 +245,15 @@ fn slides(elements: &[Element], slide: Slide) -> Vec<[f64; 2]> {
     let mut joints = marks(elements.len() + 1);
     joints[0].slide = Some(slide);
     joints[0].fixed = false;
-    let text =
-        svg(&Picture { title: "t", figures: &[], elements, closed: false, joints: &joints, obstacles: &[] });
+    let text = svg(&Picture {
+        title: "t",
+        figures: &[],
+        elements,
+        closed: false,
+        joints: &joints,
+        polygons: &[],
+        obstacles: &[],
+    });
     let document = Document::parse(&text).expect("XML");
     assert!(text.contains(">sliding point<") && !text.contains("NaN"));
     let group = of_class(&document, "slides")[0];
@@ -257,6 +284,64 @@ fn a_sliding_joint_shows_its_way() {
     assert_eq!(slides(&screw(9), Slide::Line([1.0, 2.0, 3.0])).len(), 1);
     let still = draw(&quarter, false, &[]);
     assert!(!still.contains("class=\"slide") && !still.contains("sliding"));
+}
+
+#[test]
+fn an_obstacle_is_drawn_with_its_clearance_around_it() {
+    // A quarter circle of radius 2 in every coordinate plane, and a segment with a point beside it.
+    let turned = |p: Vector, turn: usize| -> Vector { std::array::from_fn(|d| p[(d + turn) % 3]) };
+    for turn in 0..3 {
+        let mut element = quarter(2.0);
+        element.rows = element.rows.map(|row| turned(row, turn));
+        let [from, to, point] = [[0.0; 3], [0.6, 0.8, 0.0], [1.0, 0.0, 0.0]].map(|point| turned(point, turn));
+        let obstacles = [obstacle(from, to, 0.25), obstacle(point, point, 0.5), obstacle(point, from, 0.0)];
+        let text = draw_with(&[element], false, &[], &obstacles);
+        assert!(text.contains(">obstacle, its clearance dotted<"));
+        let document = Document::parse(&text).expect("XML");
+        let shown = |class: &'static str, tag: &str| -> Vec<_> {
+            of_class(&document, class).into_iter().filter(|node| node.has_tag_name(tag)).collect()
+        };
+        // The first line is the legend's.
+        let [_, segment, other] = shown("obstacle", "line")[..] else { panic!("two segments") };
+        let [dot] = shown("obstacle", "circle")[..] else { panic!("one point") };
+        let [around, circle] = shown("clearance", "path")[..] else { panic!("two outlines") };
+        let ends_of = |line| [["x1", "y1"], ["x2", "y2"]].map(|end| end.map(|name| number(line, name)));
+        let [a, b] = ends_of(segment);
+        let distance = |p: [f64; 2], q: [f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
+        let zoom = distance(a, b);
+        let centre = ["cx", "cy"].map(|name| number(dot, name));
+        assert!((distance(a, centre) - zoom).abs() < 0.03 && distance(ends_of(other)[0], centre) < 0.03);
+        for spot in ends(circle) {
+            assert!((distance(spot, centre) - 0.5 * zoom).abs() < 0.03, "turn {turn}: {spot:?}");
+        }
+        let to_segment = |p: [f64; 2]| {
+            let (step, off) = ([0, 1].map(|d| b[d] - a[d]), [0, 1].map(|d| p[d] - a[d]));
+            let share = ((step[0] * off[0] + step[1] * off[1]) / (zoom * zoom)).clamp(0.0, 1.0);
+            distance(p, [0, 1].map(|d| a[d] + share * step[d]))
+        };
+        let spots = ends(around);
+        assert!(spots.iter().all(|spot| (to_segment(*spot) - 0.25 * zoom).abs() < 0.03), "{spots:?}");
+        // Once around: the area of a stadium.
+        let cross = |p: &[f64; 2], q: &[f64; 2]| p[0] * q[1] - p[1] * q[0];
+        let area: f64 = spots.iter().zip(spots.iter().cycle().skip(1)).map(|(p, q)| 0.5 * cross(p, q)).sum();
+        let stadium = (0.5 + std::f64::consts::PI / 16.0) * zoom * zoom;
+        assert!((area.abs() / stadium - 1.0).abs() < 2e-3, "{area} {stadium}");
+    }
+    let plain = draw(&[quarter(2.0)], false, &[]);
+    assert!(!plain.contains("class=\"obstacle") && !plain.contains("class=\"clearance"));
+}
+
+#[test]
+fn the_picture_holds_its_obstacles_with_their_clearance() {
+    let far = obstacle([30.0, 0.0, 0.0], [30.0, 0.0, 0.0], 5.0);
+    let text = draw_with(&[quarter(1.0)], false, &[], &[far]);
+    let document = Document::parse(&text).expect("XML");
+    let frame = of_class(&document, "frame")[0];
+    let [x, y, w, h] = ["x", "y", "width", "height"].map(|name| number(frame, name));
+    let outline = of_class(&document, "clearance").into_iter().find(|node| node.has_tag_name("path"));
+    for [u, v] in ends(outline.expect("an outline")) {
+        assert!((x..=x + w).contains(&u) && (y..=y + h).contains(&v), "{u} {v}");
+    }
 }
 
 #[test]

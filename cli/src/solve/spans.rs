@@ -1,5 +1,5 @@
-//! Where the joints stand among the elements. With a tolerance each span has as many as it needs, and the kernel does not say
-//! which are whose: a fixed joint is known by its point, the others by what is known of them.
+//! Where the joints stand among the elements. With a tolerance or obstacles each span has as many as it needs, and the kernel
+//! does not say which are whose: a fixed joint is known by its point, the others by what is known of them.
 
 use super::Options;
 use crate::constraints::{Given, NamedJoint, Specification};
@@ -15,7 +15,7 @@ const EVEN: f64 = 1e-6;
 pub(super) fn starts(specification: &Specification, elements: &[Element], options: &Options) -> Vec<usize> {
     let (joints, count) = (&specification.joints, elements.len());
     let spans = if specification.closed { joints.len() } else { joints.len() - 1 };
-    if !options.has_tolerance() || count <= spans {
+    if count <= spans || count == spans * options.elements_per_span as usize {
         return (0..joints.len()).map(|joint| joint * count / spans.max(1)).collect();
     }
     let mut starts = vec![0];
@@ -109,7 +109,7 @@ mod tests {
     fn found(text: &str, tolerance: f64) -> (usize, Vec<(usize, Vector)>) {
         let specification = constraints::read(text.as_bytes()).expect("a curve").specification;
         let options = Options { tolerance, elements_per_span: 64, ..Options::PLAIN };
-        let solution = solve(&specification, &options).expect("good data");
+        let solution = &solve(&specification, &options).expect("good data")[0];
         let point = |start: usize| match solution.elements.get(start) {
             Some(element) => element.rows[0],
             None => solution.elements[start - 1].rows[5],

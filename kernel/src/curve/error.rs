@@ -134,7 +134,7 @@ pub enum CurveError {
         /// How many were given.
         given: usize,
     },
-    /// An obstacle has a number that is not finite, a negative clearance or an unknown side.
+    /// An obstacle has a number that is not finite or beyond 1e100, a negative clearance or an unknown side.
     BadObstacle {
         /// The obstacle.
         obstacle: usize,
@@ -228,7 +228,8 @@ impl fmt::Display for CurveError {
             }
             Self::BadObstacle { obstacle } => write!(
                 f,
-                "obstacle {obstacle} has a number that is not finite, a negative clearance or an unknown side"
+                "obstacle {obstacle} has a number that is not finite or beyond 1e100, a negative clearance or an \
+                 unknown side"
             ),
             Self::ObstaclesNotPossible => f.write_str(
                 "obstacles need a planar curve, without a tolerance, a reference shape, a given length or a warm start",

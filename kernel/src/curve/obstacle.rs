@@ -7,7 +7,7 @@ pub struct Side(pub u32);
 
 impl Side {
     /// The obstacle lies to the left of the curve: about the plane's normal, which is +z, +x or +y where the data lie in a
-    /// coordinate plane.
+    /// coordinate plane and else has its largest coordinate positive.
     pub const LEFT: Self = Self(0);
     /// The obstacle lies to the right of the curve.
     pub const RIGHT: Self = Self(1);

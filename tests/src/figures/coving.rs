@@ -8,16 +8,17 @@ use super::solved::{Solved, significant};
 use super::view::{Vector, View};
 use crate::appendix;
 use crate::compare::kernel_joints;
-use minvar::curve::{Curve, Options, Quantity, measure};
+use minvar::curve::{Curve, Obstacle, Options, Quantity, Side, measure};
 
 /// The duct's free corner.
 const CORNER: Vector = [6.0, -6.0, 0.0];
 
-/// The coving with another curvature at the wall.
-fn solved(name: &str, curvature: Quantity) -> Solved {
+/// The coving with another curvature at the wall, and what it keeps clear of.
+fn solved(name: &str, curvature: Quantity, obstacles: &[Obstacle]) -> Solved {
     let mut joints = kernel_joints(&appendix::figure("4.22"));
     joints[0] = joints[0].with_curvature(curvature);
-    Solved::of(name, &Curve::open(&joints), &Options { elements_per_span: 8, ..Options::DEFAULT })
+    let curve = Curve::open(&joints).with_obstacles(obstacles);
+    Solved::of(name, &curve, &Options { elements_per_span: 8, ..Options::DEFAULT })
 }
 
 /// How far outside the duct the curve passes its corner; negative inside.
@@ -29,11 +30,12 @@ fn clearance(curve: &Solved) -> f64 {
 }
 
 pub(super) fn figure() -> Figure {
-    let given = |kappa: f64| Quantity::fixed([kappa, 0.0, 0.0]);
+    let face = |from, to| Obstacle::segment(from, to, 0.25, Side::LEFT);
+    let duct = [face([0.0, CORNER[1], 0.0], CORNER), face(CORNER, [CORNER[0], 0.0, 0.0])];
     let curves = [
-        (solved("① curvature free", Quantity::FREE), "c"),
-        (solved("② 0.27, as published", given(0.27)), "b"),
-        (solved("③ 0.33667, clear of the duct", given(0.33667)), "a"),
+        (solved("① curvature free", Quantity::FREE, &[]), "c"),
+        (solved("② 0.27, as published", Quantity::fixed([0.27, 0.0, 0.0]), &[]), "b"),
+        (solved("③ clear of the duct", Quantity::FREE, &duct), "a"),
     ];
     let strokes =
         curves.iter().map(|(curve, class)| Stroke::new(curve, class, if *class == "a" { 3.0 } else { 0.0 }));
@@ -51,11 +53,14 @@ pub(super) fn figure() -> Figure {
     let mut sheet = Sheet::new(
         "4.22  Coving design",
         &[
-            &[("c", "① curvature at the wall free"), ("b", "② 0.27"), ("a", "③ 0.33667, with comb")],
+            &[
+                ("c", "① curvature at the wall free"),
+                ("b", "② 0.27"),
+                ("a", "③ clear of the duct, with comb"),
+            ],
             &[
                 ("fixed", "point"),
                 ("tangent", "tangent"),
-                ("ring", "curvature"),
                 ("solid", "wall, ceiling and duct of 6 by 6 inches"),
             ],
         ],
@@ -67,10 +72,10 @@ pub(super) fn figure() -> Figure {
         number: "4.22",
         title: "Coving design",
         caption: format!(
-            "A coving that blends wall and ceiling and hides a heating duct; in inches. The designer raises the curvature \
-             at the wall until the coving clears the duct. It passes the corner of a square duct at ① {}, ② {} and \
-             ③ {} inches (negative: cuts it off). ② is the published curvature, ③ what \
-             `c_examples/01_coving.c` finds for a quarter of an inch.",
+            "A coving that blends wall and ceiling and hides a heating duct; in inches. The designer of 1992 raised the \
+             curvature at the wall until the coving cleared the duct: ② is the published one. ③ has the faces of a square duct \
+             as obstacles, at a quarter of an inch, and finds the curvature: `c_examples/01_coving.c`. The corner of that duct \
+             lies at ① {}, ② {} and ③ {} inches (negative: cut off).",
             clear(0),
             clear(1),
             clear(2)

@@ -28,6 +28,7 @@ impl Solved {
         let mut elements = vec![Element::ZERO; elements_len(curve, options)];
         let report = solve(curve, options, &mut workspace, &mut elements, &mut [], &mut Silent)
             .expect("the data are good");
+        elements.truncate(report.elements);
         Self {
             name: name.into(),
             joints: curve.joints.to_vec(),
