@@ -3,6 +3,7 @@
 use crate::code::{Failure, answer, minvar_code, minvar_error, minvar_status};
 use crate::raw::{Output, array, array_mut, reference};
 use core::ffi::c_void;
+use core::mem::MaybeUninit;
 use kernel::curve::{
     self, Curve, CurveError, Element, Functional, Joint, Obstacle, Options, Reference, Report,
 };
@@ -515,26 +516,6 @@ fn report_of(found: &Report) -> minvar_report {
     }
 }
 
-/// What minima are compared by; the status is not read.
-fn ours(report: &minvar_report) -> Report {
-    Report {
-        status: kernel::solve::Status::Converged,
-        planar: report.planar != 0,
-        elements: report.elements,
-        iterations: report.iterations,
-        linearisations: report.linearisations,
-        unknowns: report.unknowns,
-        value: report.value,
-        fine_value: report.fine_value,
-        length: report.length,
-        variation: report.variation,
-        bending: report.bending,
-        error: report.error,
-        gradient: report.gradient,
-        decrement: report.decrement,
-    }
-}
-
 /// Computes a curve (thesis chapter 4).
 ///
 /// `workspace`: `workspace_len` doubles, at least what minvar_curve_workspace_len() says, in any condition; what is left
@@ -656,12 +637,18 @@ pub unsafe extern "C" fn minvar_curve_minima(
             let options = options_of(options)?;
             let workspace = array_mut(workspace, workspace_len, "workspace")?;
             let elements = array_mut(elements.cast::<Element>(), elements_len, "elements")?;
-            let reports = array_mut(reports, reports_len, "reports")?;
+            // C may hand over memory that was never written, and not every pattern is a status.
+            let reports = array_mut(reports.cast::<MaybeUninit<minvar_report>>(), reports_len, "reports")?;
             let count = Output::new(count, "count")?;
             let mut watch = Watch { observer, context: observer_context };
-            let found = curve::minima_as(
-                &curve, &options, workspace, elements, reports, report_of, ours, &mut watch,
-            )?;
+            let make = |report: &Report| MaybeUninit::new(report_of(report));
+            let figures = |report: &MaybeUninit<minvar_report>| {
+                // SAFETY: asked of reports that were made alone.
+                let report = report.assume_init_ref();
+                [report.value, report.length, report.bending]
+            };
+            let found =
+                curve::minima_as(&curve, &options, workspace, elements, reports, make, figures, &mut watch)?;
             count.put(found);
             Ok(())
         })

@@ -457,6 +457,56 @@ fn a_curve_keeps_clear_of_its_obstacles_and_touches_only_what_pushes() {
     }
 }
 
+/// Random waves past random obstacles, some of them within reach of a joint: where a minimum is claimed, a look at many places
+/// finds none too near. Not all have one.
+#[test]
+fn no_obstacle_is_too_near_to_a_curve_that_converged() {
+    let mut seed = 11u64;
+    let mut random = move || {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        (seed >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let (mut converged, mut touching) = (0, 0);
+    for case in 0..150 {
+        let joints: Vec<Joint> =
+            (0..4).map(|i| Joint::at([f64::from(i) + 0.2 * random(), 0.6 * random(), 0.0])).collect();
+        let mut point = || [0.3 + 2.4 * random(), 0.8 * random() - 0.1, 0.0];
+        let (from, to) = (point(), point());
+        let clearance = 0.12 * random();
+        let side = if random() < 0.5 { Side::LEFT } else { Side::RIGHT };
+        let obstacles = if random() < 0.5 {
+            [Obstacle::point(from, clearance, side)]
+        } else {
+            [Obstacle::segment(from, to, clearance, side)]
+        };
+        let (report, elements) = solved(
+            &Curve::open(&joints).with_obstacles(&obstacles),
+            &Options { max_iterations: 100, ..Options::DEFAULT },
+        );
+        if report.status != Status::Converged {
+            continue;
+        }
+        converged += 1;
+        touching += usize::from(report.elements > 3);
+        let sign = if side == Side::LEFT { 1.0 } else { -1.0 };
+        for step in 0..=200 {
+            let share = f64::from(step) / 200.0;
+            let [a, b] = [obstacles[0].from, obstacles[0].to];
+            let place: [f64; 3] = std::array::from_fn(|d| a[d] + share * (b[d] - a[d]));
+            let found = measure::closest(&elements, place).expect("a place");
+            let ends = (found.element == 0 && found.parameter == 0.0)
+                || (found.element + 1 == elements.len() && found.parameter == 1.0);
+            if !ends {
+                let left = to_the_left(&elements, place);
+                assert!(sign * left > clearance - 1e-6, "case {case}, at {share}: {left}, not {clearance}");
+            }
+        }
+    }
+    assert!(converged > 70 && touching > 20, "{converged} of 150 converged, {touching} touch");
+}
+
 #[test]
 fn a_curve_passes_under_a_ceiling() {
     let joints = [Joint::at([0.0, 0.0, 0.0]), Joint::at([2.0, 2.7, 0.0]), Joint::at([6.0, 1.2, 0.0])];

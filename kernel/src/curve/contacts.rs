@@ -21,6 +21,11 @@ const TOUCHES: f64 = 1e-9;
 /// Places an element, and on a segment, where the nearest is looked for first.
 const SAMPLES: usize = 16;
 
+/// Steps to the nearest place.
+const MOST_STEPS: usize = 12;
+/// Steps to the worst place of a segment between samples.
+const THIRDS: usize = 24;
+
 /// The least part of an element that is cut off.
 const LEAST_PIECE: f64 = 0.05;
 
@@ -151,7 +156,8 @@ struct Foot<const D: usize> {
 }
 
 impl<const D: usize> Foot<D> {
-    /// The foot of a point on a chain of elements; `None` where the nearest place is an end that the curve does not pass.
+    /// The foot of a point on a chain of elements; `None` where the nearest place is an end of an open curve that it does not
+    /// pass.
     fn of(model: &Model<'_, D>, state: &[f64], point: &SVector<f64, D>) -> Option<Self>
     where
         Shape<D>: Density<D>,
@@ -168,25 +174,48 @@ impl<const D: usize> Foot<D> {
                 }
             }
         }
-        let (_, element, mut t) = best?;
-        let rows = model.rows(element, state);
-        for _ in 0..8 {
+        let (_, mut element, mut t) = best?;
+        let count = model.element_count();
+        let mut rows = model.rows(element, state);
+        for _ in 0..MOST_STEPS {
             let basis = hermite::basis(t);
             let [here, first, second] = [0, 1, 2].map(|order: usize| combine(&rows, &basis[order]));
             let off = here - point;
             let slope = first.dot(&first) + off.dot(&second);
             let slope = if slope > 0.0 { slope } else { first.dot(&first) };
-            t = (t - off.dot(&first) / slope).clamp(0.0, 1.0);
+            let next = t - off.dot(&first) / slope;
+            t = next.clamp(0.0, 1.0);
+            // Over a node into the neighbour.
+            let over = if next > 1.0 { element + 1 } else { element + count - 1 };
+            let ends = !model.curve.closed && (over == count || (next < 0.0 && element == 0));
+            if next != t && !ends {
+                let beyond = model.rows(over % count, state);
+                let back = if next > 1.0 { 0.0 } else { 1.0 };
+                let basis = hermite::basis(back);
+                let (there, ahead) = (combine(&beyond, &basis[0]), combine(&beyond, &basis[1]));
+                // At a corner both sides may lead back to it.
+                if (ahead.dot(&(point - there)) > 0.0) == (next > 1.0) {
+                    (element, t, rows) = (over % count, back, beyond);
+                }
+            }
         }
         let basis = hermite::basis(t);
         let (here, first) = (combine(&rows, &basis[0]), combine(&rows, &basis[1]));
         let off = point - here;
         let (distance, speed) = (libm::sqrt(off.dot(&off)), libm::sqrt(first.dot(&first)));
-        let along = off.dot(&first) / speed;
-        if along.abs() > 0.1 * distance {
-            return None;
+        let mut tangent = first / speed;
+        let at_end = (t == 0.0 && element == 0) || (t == 1.0 && element + 1 == count);
+        if at_end && !model.curve.closed {
+            if off.dot(&tangent).abs() > 0.1 * distance {
+                return None;
+            }
+        } else if t == 0.0 || t == 1.0 {
+            // A corner's sides are those of what halves it.
+            let (other, end) =
+                if t == 0.0 { ((element + count - 1) % count, 1) } else { ((element + 1) % count, 0) };
+            tangent += model.end(other, end, state).frame[0];
         }
-        let across = (first[0] * off[1] - first[1] * off[0]) / speed;
+        let across = tangent[0] * off[1] - tangent[1] * off[0];
         let left = if across >= 0.0 { distance } else { -distance };
         Some(Self { element, t, left })
     }
@@ -206,24 +235,39 @@ where
         let [from, to] = [&obstacle.from, &obstacle.to].map(|point| model.place.local_point(point));
         let clearance = model.place.local_length(obstacle.clearance);
         let sign = if obstacle.side == Side::LEFT { 1.0 } else { -1.0 };
-        let mut look = |share: f64, which: usize| {
-            if taken(3 * index + which) {
-                return;
-            }
+        let lack = |share: f64| {
             let point = from + (to - from) * share;
-            if let Some(foot) = Foot::of(model, state, &point) {
-                let lack = clearance - sign * foot.left;
-                if worst.as_ref().is_none_or(|(most, ..)| lack > *most) {
-                    worst = Some((lack, 3 * index + which, foot, point));
-                }
+            Foot::of(model, state, &point).map(|foot| (clearance - sign * foot.left, foot, point))
+        };
+        let mut note = |which: usize, found: Option<(f64, Foot<D>, SVector<f64, D>)>| {
+            if let Some((lack, foot, point)) = found
+                && worst.as_ref().is_none_or(|(most, ..)| lack > *most)
+            {
+                worst = Some((lack, 3 * index + which, foot, point));
             }
         };
-        look(0.0, 0);
-        if from != to {
-            look(1.0, 1);
-            for sample in 1..SAMPLES {
-                look(sample as f64 / SAMPLES as f64, 2);
+        for (which, share) in [(0, 0.0), (1, 1.0)] {
+            if (from != to || which == 0) && !taken(3 * index + which) {
+                note(which, lack(share));
             }
+        }
+        if from != to {
+            let step = 1.0 / SAMPLES as f64;
+            let value = |share: f64| lack(share).map_or(f64::NEG_INFINITY, |(lack, ..)| lack);
+            let inner = (1..SAMPLES).map(|sample| sample as f64 * step);
+            let (_, nearest) = inner.fold((f64::NEG_INFINITY, 0.5), |best, share| {
+                let here = value(share);
+                if here > best.0 { (here, share) } else { best }
+            });
+            // By thirds to the place between the samples.
+            let (mut low, mut high) = (nearest - step, nearest + step);
+            for _ in 0..THIRDS {
+                let third = (high - low) / 3.0;
+                if value(low + third) < value(high - third) { low += third } else { high -= third }
+            }
+            let between = 0.5 * (low + high);
+            let share = if value(between) > value(nearest) { between } else { nearest };
+            note(2, lack(share));
         }
     }
     worst

@@ -18,6 +18,7 @@ use super::space::Space;
 use super::start::{Start, adopt, refine};
 use crate::basis::quadrature::MAX_POINTS;
 use crate::solve::{self, Observer, Outcome, Problem, Record, Status, WorkspaceTooSmall};
+
 /// How a curve came out. All figures in the caller's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
@@ -199,10 +200,12 @@ pub fn minima(
     reports: &mut [Report],
     observer: &mut dyn Observer,
 ) -> Result<usize, CurveError> {
-    minima_as(curve, options, workspace, elements, reports, |report| *report, |report| *report, observer)
+    let figures = |report: &Report| [report.value, report.length, report.bending];
+    minima_as(curve, options, workspace, elements, reports, |report| *report, figures, observer)
 }
 
-/// [`minima`] into reports of another form, which can be made of and read as ours.
+/// [`minima`] into reports of another form, which can be made of ours. `figures` tells value, length and bending of one that
+/// was made; it is asked of no other.
 ///
 /// # Errors
 /// As [`minima`].
@@ -215,7 +218,7 @@ pub fn minima_as<R: Copy>(
     elements: &mut [Element],
     reports: &mut [R],
     make: impl Fn(&Report) -> R,
-    read: impl Fn(&R) -> Report,
+    figures: impl Fn(&R) -> [f64; 3],
     observer: &mut dyn Observer,
 ) -> Result<usize, CurveError> {
     let len = elements_len(curve, options);
@@ -235,17 +238,16 @@ pub fn minima_as<R: Copy>(
             continue;
         }
         let same = |other: &R| {
-            let other = read(other);
+            let [value, length, bending] = figures(other);
             // Circles have no value: what is nothing beside that of bending once around is the same nothing.
-            let size = other.bending * other.length;
-            let nothing = NOTHING * size * functional_scale(options, other.length);
-            (report.value - other.value).abs() <= SAME_VALUE * (report.value + other.value) + nothing
-                && (report.length - other.length).abs() <= SAME_LENGTH * report.length
+            let nothing = NOTHING * bending * length * functional_scale(options, length);
+            (report.value - value).abs() <= SAME_VALUE * (report.value + value) + nothing
+                && (report.length - length).abs() <= SAME_LENGTH * report.length
         };
         if reports[..found].iter().any(same) {
             continue;
         }
-        let lower = |other: &R| report.value < read(other).value;
+        let lower = |other: &R| report.value < figures(other)[0];
         let place = reports[..found].iter().position(lower).unwrap_or(found);
         if place == reports.len() {
             continue;
@@ -275,6 +277,9 @@ fn begin(
     from: Begin,
 ) -> Result<Report, CurveError> {
     let unit = look_over(curve, options)?;
+    if from == Begin::Elements && !curve.obstacles.is_empty() {
+        return Err(CurveError::ObstaclesNotPossible);
+    }
     match Place::of(curve, unit, options.dimension)? {
         Place::Plane(place) => run(curve, options, &place, workspace, elements, records, observer, from),
         Place::Space(_) if !curve.obstacles.is_empty() => Err(CurveError::ObstaclesNotPossible),
@@ -418,9 +423,6 @@ where
     let (begin, warm) = (from, from == Begin::Elements);
     let from = if warm { Some(&*elements) } else { curve.reference.map(|reference| reference.elements) };
     if let Some(from) = from {
-        if warm && !curve.obstacles.is_empty() {
-            return Err(CurveError::ObstaclesNotPossible);
-        }
         check_elements(from)?;
         model.natural_cost = adopt(&model, place, from, state);
         model.start_length = model.rough_length(state);
