@@ -428,11 +428,12 @@ where
         model.start_length = model.rough_length(state);
         take_scale(&mut model, state);
         if warm {
-            let improved =
-                natural::improve(&model, length, None, state, decrease, work, &mut |sums, step| {
-                    passes.note(model.value_of(sums), step)
-                });
-            passes.multiplier = improved.map_or(0.0, |improved| improved.tension);
+            passes.hastens = decrease > LOOSE;
+            if let Some(improved) = passes.lay(&mut model, None, decrease, state, work)
+                && let Some(outcome) = passes.accept(&model, &improved, decrease, state)
+            {
+                return Ok(hand_over(&model, &outcome, &passes, state, elements, options));
+            }
         }
         if let Some(reference) = &curve.reference {
             model.gauge = reference.weight * model.natural_cost / count as f64;
@@ -472,30 +473,12 @@ where
     let improved = if options.continuation > 0 {
         None
     } else {
-        natural::improve(
-            &coarse,
-            length,
-            begin.bent(curve),
-            coarse_state,
-            decrease,
-            work,
-            &mut |sums, step| passes.note(coarse.value_of(sums), step),
-        )
+        passes.lay(&mut coarse, begin.bent(curve), decrease, coarse_state, work)
     };
-    passes.multiplier = improved.map_or(0.0, |improved| improved.tension);
-    passes.hastens = improved.is_some() && decrease > LOOSE;
-    if improved.is_some_and(|improved| improved.grows) {
-        // Only whether it goes on growing is left to find out.
-        passes.hurry(MOST_GROWING);
-    }
-    coarse.fitted =
-        decrease > LOOSE && improved.is_some_and(|it| it.left_out + it.misfit <= FITTED * it.integral);
-    if let Some(improved) = improved
-        && length.is_none()
-        && decrease > LOOSE
+    if let Some(improved) = &improved
         && options.elements_per_span == 1
         && curve.obstacles.is_empty()
-        && let Some(outcome) = passes.accept(&coarse, &improved, decrease, coarse_state)
+        && let Some(outcome) = passes.accept(&coarse, improved, decrease, coarse_state)
     {
         return Ok(hand_over(&coarse, &outcome, &passes, coarse_state, elements, options));
     }
@@ -713,8 +696,6 @@ fn functional_scale(options: &Options, unit: f64) -> f64 {
     }
 }
 
-/// Elements that exceed the least integral by less than this part of it have no better ones beside them.
-const FITTED: f64 = 1e-6;
 /// With one element a span on the way to more, a functional to this fraction is enough.
 const COARSE_DECREASE: f64 = 1e-7;
 /// By how much the first tension of a continuation outweighs the functional.
@@ -729,9 +710,7 @@ const TRUSTED: f64 = 1e-4;
 const NOTHING: f64 = 1e-9;
 /// A curve that is wrong, and grew by more than this from its start, was on its way to infinity.
 const SUSPECT_GROWTH: f64 = 10.0;
-/// How many iterations a curve gets that grows already when its directions alone are solved for, and how much it must have
-/// grown if they do not end otherwise.
-const MOST_GROWING: usize = 60;
+/// How much a curve must have grown that grew already when its directions alone were solved for, and ends in no minimum.
 const GROWS: f64 = 3.0;
 /// No curve with a minimum grows by more than this.
 const GREAT_GROWTH: f64 = 50.0;

@@ -11,7 +11,7 @@ use minvar::basis::quadrature::lobatto;
 use minvar::curve::{Continuity, Curve, Element, Functional, Given, Joint, Options, Report};
 use std::fmt::Write;
 
-/// The points of the rule that minvar minimises with, and so do the peers that minimise sums.
+/// The points of the rule that all minimise sums with: those that minvar's own choice does most of its work with.
 const POINTS: usize = 16;
 
 /// A curve to be found, in a unit of length near the data's: some peers know no other.
@@ -77,9 +77,9 @@ impl Task {
         Options { functional: self.functional, elements_per_span: self.elements_per_span, ..Options::DEFAULT }
     }
 
-    /// The same, with another `relative_decrease`.
+    /// The same, with another `relative_decrease` and the rule that the peers get.
     pub fn options(&self, relative_decrease: f64) -> Options {
-        Options { relative_decrease, ..self.default_options() }
+        Options { relative_decrease, quadrature_points: POINTS as u32, ..self.default_options() }
     }
 
     /// minvar's solution.

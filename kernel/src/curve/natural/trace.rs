@@ -5,6 +5,7 @@
 //! positions, directions and curvatures are true, and only the quintics between them are not.
 
 use super::chain::{Chain, Effort, Ended, Watch, memory_len};
+use super::fit::{Known, fit};
 use super::functions::{FINE, FINE_FUNCTIONS, FINE_PAIRS, functions};
 use super::span::Span;
 use super::{applies, task};
@@ -18,6 +19,8 @@ use nalgebra::SVector;
 
 /// To rounding.
 const WHOLE: Effort = Effort { settled: 1e-10, iterations: 40, exact: true };
+/// Elements that differ from the curve by less than this part of what is compared are laid well.
+const ENOUGH: f64 = 1e-9;
 /// Points with which a part of a curve is integrated.
 const POINTS: usize = 8;
 /// How large the integrals of the last functions are at most.
@@ -142,6 +145,8 @@ impl TrueCurve<'_> {
                 let [a, b] = [before.curvature[0], after.curvature[0]];
                 let mut ends = [before, after];
                 give_speeds(&mut ends, piece, piece * libm::sqrt(0.5 * (a * a + b * b)));
+                let known = Known { direction: &q, length, from, to };
+                fit(&mut ends, &known, fine.weights.variation > 0.0, ENOUGH);
                 for (end, value) in ends.iter().enumerate() {
                     fine.set_end(first + part, end, value, state);
                 }
