@@ -12,6 +12,8 @@ use crate::solve::{
 
 /// The first pass ends when a step promises to lower the functional by less than this fraction.
 const SHAPING_DECREASE: f64 = 1e-1;
+/// The first steps from elements that run along a known curve may be so long, in natural sizes.
+const NEAR: f64 = 0.3;
 /// Elements that exceed the least integral by less than this part of it have no better ones beside them.
 const FITTED: f64 = 1e-6;
 /// How many iterations a curve gets that grows already when its directions alone are solved for.
@@ -245,8 +247,8 @@ impl<'a> Passes<'a> {
         Shape<D>: Density<D>,
     {
         let Some(target) = self.length else {
-            let first = if self.hastens { 0 } else { RELAXATION };
-            return self.minimise(model, relative_decrease, [first, RELAXATION], 1.0, state, work);
+            let (first, longest) = if self.hastens { (0, NEAR) } else { (RELAXATION, 1.0) };
+            return self.minimise(model, relative_decrease, [first, RELAXATION], longest, state, work);
         };
         // The method of multipliers: value + multiplier (L − target) + ½ penalty (L − target)².
         let mut corrections = 0;

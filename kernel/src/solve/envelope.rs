@@ -4,12 +4,16 @@
 //! definite matrix fills nothing outside the envelope. A matrix with one negative eigenvalue, to which something
 //! else is added that makes it positive again, is `L D Lᵀ` with a single −1 in the diagonal `D`.
 
+use super::problem::packed_len;
 use super::workspace::Indices;
 
-/// The shape of an envelope: where each row starts and at which column.
-pub(crate) struct Envelope<'a, 'w> {
-    pub(crate) first: &'a Indices<'w>,
-    pub(crate) start: &'a Indices<'w>,
+/// The shape of an envelope.
+#[derive(Clone, Copy)]
+pub(crate) enum Envelope<'a, 'w> {
+    /// At which column each row begins, and where it stands.
+    Rows { first: &'a Indices<'w>, start: &'a Indices<'w> },
+    /// So many whole rows, one after the other.
+    Full(usize),
 }
 
 /// What a factorisation found.
@@ -46,22 +50,29 @@ const LEAST_NEGATIVE: f64 = 1e-8;
 const IMMOVABLE: f64 = 1e100;
 
 impl Envelope<'_, '_> {
+    #[inline]
     pub(crate) fn rows(&self) -> usize {
-        self.first.len()
+        match self {
+            Self::Rows { first, .. } => first.len(),
+            Self::Full(rows) => *rows,
+        }
     }
 
     /// Row `r` as its first column and its range in the stored entries.
     #[inline]
     fn row(&self, r: usize) -> (usize, core::ops::Range<usize>) {
-        let (first, start) = (self.first.get(r), self.start.get(r));
+        let (first, start) = match self {
+            Self::Rows { first, start } => (first.get(r), start.get(r)),
+            Self::Full(_) => (0, packed_len(r)),
+        };
         (first, start..start + (r - first) + 1)
     }
 
     /// Adds to the entry in row `r`, column `c`, `c <= r`.
     #[inline]
     pub(crate) fn add(&self, matrix: &mut [f64], r: usize, c: usize, value: f64) {
-        let at = self.start.get(r) + c - self.first.get(r);
-        matrix[at] += value;
+        let (first, range) = self.row(r);
+        matrix[range.start + c - first] += value;
     }
 
     /// The largest absolute row sum: a bound on the matrix's eigenvalues (Gershgorin). `sums` is scratch.

@@ -210,7 +210,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                     solved: [one, other],
                     ..
                 } = &mut self.work;
-                let envelope = Envelope { first: row_first, start: row_start };
+                let envelope = Envelope::Rows { first: row_first, start: row_start };
                 let allow = if self.problem.is_cautious() { Allow::Definite } else { Allow::OneNegative };
                 let coupling = self
                     .problem
@@ -384,7 +384,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             ..
         } = &mut self.work;
         let (coupled, first) = (problem.is_coupled(), self.coupled.first);
-        let envelope = Envelope { first: row_first, start: row_start };
+        let envelope = Envelope::Rows { first: row_first, start: row_start };
         for block in 0..problem.blocks() {
             let (from, dofs) = (offset.get(block), problem.dofs(block));
             if dofs > 0 {

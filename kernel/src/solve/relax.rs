@@ -7,7 +7,7 @@
 
 use super::envelope::Envelope;
 use super::minimise::NO_COST;
-use super::problem::{BlockList, Coupled, Problem, packed, packed_len};
+use super::problem::{BlockList, Coupled, MAX_ELEMENT_BLOCKS, Problem, packed, packed_len};
 use super::trust_region::{self, Radius, Vectors};
 use super::workspace::{Indices, Workspace};
 
@@ -113,21 +113,25 @@ fn relax_element<P: Problem + ?Sized>(
     enough: f64,
 ) -> usize {
     let coupled = problem.is_coupled();
-    let Workspace { starts, trial, spare, slots, local_first, local_start, local, .. } = work;
+    let Workspace { starts, trial, spare, slots, local, .. } = work;
     let mut list = BlockList::new();
     problem.element_blocks(element, &mut list);
-    let private = |block: usize| is_private(starts, block);
-    let size: usize = list.iter().map(|&block| problem.dofs(block)).sum();
-    let own: usize = list.iter().filter(|&&block| private(block)).map(|&block| problem.dofs(block)).sum();
+    // Its own blocks, and how many unknowns they have.
+    let mut blocks = heapless::Vec::<(usize, usize), MAX_ELEMENT_BLOCKS>::new();
+    let (mut size, mut own) = (0, 0);
+    for &block in &list {
+        let dofs = problem.dofs(block);
+        size += dofs;
+        if is_private(starts, block) {
+            own += dofs;
+            let _ = blocks.push((block, dofs));
+        }
+    }
     if own == 0 {
         return 0;
     }
-    for row in 0..own {
-        local_first.set(row, 0);
-        local_start.set(row, packed(row, 0));
-    }
-    let (first, start) = (local_first.head(own), local_start.head(own));
-    let envelope = Envelope { first: &first, start: &start };
+    let private = |block: usize| blocks.iter().any(|&(one, _)| one == block);
+    let envelope = Envelope::Full(own);
     let (matrix, rest) = local.split_at_mut(packed_len(own));
     let (factor, rest) = rest.split_at_mut(packed_len(own));
     let (gradient, rest) = rest.split_at_mut(own);
@@ -150,12 +154,9 @@ fn relax_element<P: Problem + ?Sized>(
     for _ in 0..steps {
         if moved {
             let mut at = 0;
-            for &block in &list {
-                if private(block) {
-                    let dofs = problem.dofs(block);
-                    problem.natural_sizes(block, trial, &mut sizes[at..at + dofs]);
-                    at += dofs;
-                }
+            for &(block, dofs) in &blocks {
+                problem.natural_sizes(block, trial, &mut sizes[at..at + dofs]);
+                at += dofs;
             }
             let first = objective(problem, rest, sums).first;
             let second = if coupled { &mut second_own[..own] } else { &mut [][..] };
@@ -231,18 +232,16 @@ fn relax_element<P: Problem + ?Sized>(
             *s *= size;
         }
         let mut at = 0;
-        for &block in &list {
-            if private(block) {
-                let (dofs, range) = (problem.dofs(block), problem.state_range(block));
-                problem.retract(block, &trial[range.clone()], &step[at..at + dofs], &mut spare[range]);
-                at += dofs;
-            }
+        for &(block, dofs) in &blocks {
+            let range = problem.state_range(block);
+            problem.retract(block, &trial[range.clone()], &step[at..at + dofs], &mut spare[range]);
+            at += dofs;
         }
         let tried_sums = problem.sums(element, spare);
         let tried = objective(problem, rest, tried_sums).value;
         let ratio = tried.is_finite().then(|| (value - tried) / found.predicted);
         let accepted = radius.judge(ratio, found.length);
-        for &block in list.iter().filter(|&&block| private(block)) {
+        for &(block, _) in &blocks {
             let range = problem.state_range(block);
             if accepted {
                 trial[range.clone()].copy_from_slice(&spare[range]);

@@ -51,7 +51,7 @@ impl Layout {
     }
 
     /// The lengths of the parts, in the order in which [`Layout::carve`] hands them out.
-    fn parts(&self) -> [usize; 26] {
+    fn parts(&self) -> [usize; 24] {
         let Self { unknowns: n, blocks, incidences, envelope, state, slot, slots, local, coupled } = *self;
         [
             blocks,     // order
@@ -73,8 +73,6 @@ impl Layout {
             state,      // scratch state
             state,      // best state of several
             slot * slots,
-            local, // rows of a dense local matrix: first
-            local, // rows of a dense local matrix: start
             packed_len(local) * 2 + 6 * local,
             coupled, // gradient of the first sum
             coupled, // gradient of the second sum
@@ -118,8 +116,6 @@ impl Layout {
             spare,
             best,
             slots,
-            local_first,
-            local_start,
             local,
             first_gradient,
             second_gradient,
@@ -146,8 +142,6 @@ impl Layout {
             spare,
             best,
             slots,
-            local_first: Indices(local_first),
-            local_start: Indices(local_start),
             local,
             sum_gradients: [first_gradient, second_gradient],
             solved: [first_solved, second_solved],
@@ -177,8 +171,6 @@ pub(super) struct Workspace<'a> {
     pub(super) spare: &'a mut [f64],
     pub(super) best: &'a mut [f64],
     pub(super) slots: &'a mut [f64],
-    pub(super) local_first: Indices<'a>,
-    pub(super) local_start: Indices<'a>,
     pub(super) local: &'a mut [f64],
     pub(super) sum_gradients: [&'a mut [f64]; 2],
     pub(super) solved: [&'a mut [f64]; 2],
@@ -205,11 +197,6 @@ impl<'a> Indices<'a> {
 
     pub(crate) fn len(&self) -> usize {
         self.0.len()
-    }
-
-    /// The first `len` of them.
-    pub(crate) fn head(&mut self, len: usize) -> Indices<'_> {
-        Indices(&mut self.0[..len])
     }
 
     pub(crate) fn fill(&mut self, value: usize) {

@@ -274,7 +274,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
         self.matrix.fill(0.0);
         self.sums = [0.0; 3];
         self.left_out = 0.0;
-        let envelope = Envelope { first: &self.row_first, start: &self.row_start };
+        let envelope = Envelope::Rows { first: &self.row_first, start: &self.row_start };
         let mut gap = 0.0f64;
         for memory in self.spans.chunks_exact_mut(stride(N)) {
             let (places, rest) = memory.split_at_mut(4);
@@ -321,7 +321,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
             let mut gap = None;
             for curvature in [1.0, 0.0] {
                 let Some(found) = self.linearise(weigh, curvature, effort.exact) else { continue };
-                let envelope = Envelope { first: &self.row_first, start: &self.row_start };
+                let envelope = Envelope::Rows { first: &self.row_first, start: &self.row_start };
                 let norm = envelope.norm(self.matrix, &mut self.factor[..unknowns]);
                 // Longer than it would like to be, a curve is under negative tension: it is held by its length.
                 let allow = if matches!(law, Law::Length(_)) { Allow::OneNegative } else { Allow::Definite };
