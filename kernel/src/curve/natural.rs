@@ -76,17 +76,28 @@ pub(super) struct Improved {
     pub(super) grows: bool,
 }
 
+/// What is wanted of start values.
+#[derive(Clone, Copy)]
+pub(super) struct Wish {
+    /// The length that is asked for.
+    pub(super) length: Option<f64>,
+    /// A span that is closed the second-nearest way.
+    pub(super) bent: Option<usize>,
+    /// Whether the elements' speeds are near those that are looked for, as those of the last solution are.
+    pub(super) warm: bool,
+    /// The fraction of the functional by which it may exceed its minimum.
+    pub(super) enough: f64,
+}
+
 /// Improves the start values of a planar curve with one element a span whose joints all stand fixed: directions and
 /// curvatures at the joints, and the speeds. Returns nothing, and leaves the state untouched, where it does not apply or does
 /// not settle.
 ///
-/// `enough` is the fraction of the functional by which it may exceed its minimum; `memory` holds [`memory_len`] numbers.
+/// `memory` holds [`memory_len`] numbers.
 pub(super) fn improve<const D: usize>(
     model: &Model<'_, D>,
-    length: Option<f64>,
-    bent: Option<usize>,
+    wish: &Wish,
     state: &mut [f64],
-    enough: f64,
     memory: &mut [f64],
     watch: &mut chain::Watch<'_>,
 ) -> Option<Improved>
@@ -96,8 +107,8 @@ where
     if !applies(model) {
         return None;
     }
-    let mut chain = Chain::of(&COARSE, model, state, bent, memory)?;
-    let (asked, law) = task(model, length);
+    let mut chain = Chain::of(&COARSE, model, state, wish.bent, memory)?;
+    let (asked, law) = task(model, wish.length);
     let mut weigh = asked;
     // A curve that grows may have no minimum: what follows goes on from here, and finds out.
     let ended = chain.settle(&mut weigh, law, &ROUGH, watch);
@@ -105,7 +116,7 @@ where
         return None;
     }
     let mut misfit = 0.0;
-    let enough = SHARE * enough;
+    let (varies, enough) = (weigh.bend > 0.0, SHARE * wish.enough);
     for index in 0..model.element_count() {
         let span = chain.span(index);
         let mut ends = [model.end(index, 0, state), model.end(index, 1, state)];
@@ -120,16 +131,18 @@ where
             }
             this.curvature[0] = span.shared[2 * end + 1];
         }
-        super::start::give_speeds(&mut ends, span.length(), span.turning(&COARSE));
+        if !wish.warm {
+            super::start::give_speeds(&mut ends, span.length(), span.turning(&COARSE));
+        }
         let direction = span.coefficients();
         let known = Known { direction: &direction, length: span.length(), from: 0.0, to: 1.0 };
-        let varies = weigh.bend > 0.0;
-        misfit += if varies { weigh.bend } else { weigh.slope } * fit(&mut ends, &known, varies, enough);
+        let weight = if varies { weigh.bend } else { weigh.slope };
+        misfit += weight * fit(&mut ends, &known, varies, wish.warm, enough);
         for (end, value) in ends.iter().enumerate() {
             model.set_end(index, end, value, state);
         }
     }
-    let tension = if length.is_some() { weigh.length } else { 0.0 };
+    let tension = if wish.length.is_some() { weigh.length } else { 0.0 };
     let (integral, left_out) = (chain.integral(&asked), chain.left_out());
     Some(Improved { tension, grows: ended == Ended::Grown, integral, left_out, misfit })
 }

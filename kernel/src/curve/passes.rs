@@ -2,7 +2,7 @@
 
 use super::fairness::{Density, Shape};
 use super::model::{Goal, Model};
-use super::natural::{self, Improved};
+use super::natural::{self, Improved, Wish};
 use super::space::Space;
 use super::torsion::SpaceFunctional;
 use crate::basis::quadrature::MAX_POINTS;
@@ -299,11 +299,12 @@ impl<'a> Passes<'a> {
     }
 
     /// Lays the elements along the curve's direction as a function of arc length, where that can be; a span may be `bent` another
-    /// way than the nearest.
+    /// way than the nearest, and the elements may be those of the last solution (`warm`).
     pub(super) fn lay<const D: usize>(
         &mut self,
         model: &mut Model<'_, D>,
         bent: Option<usize>,
+        warm: bool,
         relative_decrease: f64,
         state: &mut [f64],
         work: &mut [f64],
@@ -311,11 +312,10 @@ impl<'a> Passes<'a> {
     where
         Shape<D>: Density<D>,
     {
-        let length = self.length;
-        let improved =
-            natural::improve(model, length, bent, state, relative_decrease, work, &mut |sums, step| {
-                self.note(model.value_of(sums), step)
-            })?;
+        let wish = Wish { length: self.length, bent, warm, enough: relative_decrease };
+        let improved = natural::improve(model, &wish, state, work, &mut |sums, step| {
+            self.note(model.value_of(sums), step)
+        })?;
         self.multiplier = improved.tension;
         self.hastens = relative_decrease > LOOSE;
         model.fitted = self.hastens && improved.left_out + improved.misfit <= FITTED * improved.integral;

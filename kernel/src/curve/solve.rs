@@ -12,7 +12,7 @@ use super::joint::{Curve, Given};
 use super::model::{Division, Goal, Model};
 use super::natural;
 use super::options::Options;
-use super::passes::{self, LOOSE, Passes};
+use super::passes::{self, Passes};
 use super::placement::{Place, Placement};
 use super::space::Space;
 use super::start::{Start, adopt, refine};
@@ -427,13 +427,11 @@ where
         model.natural_cost = adopt(&model, place, from, state);
         model.start_length = model.rough_length(state);
         take_scale(&mut model, state);
-        if warm {
-            passes.hastens = decrease > LOOSE;
-            if let Some(improved) = passes.lay(&mut model, None, decrease, state, work)
-                && let Some(outcome) = passes.accept(&model, &improved, decrease, state)
-            {
-                return Ok(hand_over(&model, &outcome, &passes, state, elements, options));
-            }
+        if warm
+            && let Some(improved) = passes.lay(&mut model, None, true, decrease, state, work)
+            && let Some(outcome) = passes.accept(&model, &improved, decrease, state)
+        {
+            return Ok(hand_over(&model, &outcome, &passes, state, elements, options));
         }
         if let Some(reference) = &curve.reference {
             model.gauge = reference.weight * model.natural_cost / count as f64;
@@ -473,7 +471,7 @@ where
     let improved = if options.continuation > 0 {
         None
     } else {
-        passes.lay(&mut coarse, begin.bent(curve), decrease, coarse_state, work)
+        passes.lay(&mut coarse, begin.bent(curve), false, decrease, coarse_state, work)
     };
     if let Some(improved) = &improved
         && options.elements_per_span == 1

@@ -10,6 +10,7 @@
 pub mod least_squares;
 pub mod opencascade;
 pub mod ours;
+pub mod own;
 pub mod peer;
 pub mod record;
 pub mod rounds;

@@ -4,9 +4,12 @@
 
 use minvar_tests::bench::peer::Peer;
 use minvar_tests::bench::record::{Record, head, mean, write};
-use minvar_tests::bench::{least_squares, opencascade, spiro};
+use minvar_tests::bench::{least_squares, opencascade, own, spiro};
 use std::path::Path;
 use std::process::ExitCode;
+
+/// What minvar is asked to show by itself.
+const OWN: &str = "minvar";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -42,6 +45,9 @@ fn run(arguments: &[String]) -> Result<(), String> {
     }
     write(&records, output)?;
     summary(&records);
+    if wanted(OWN) {
+        own::run(output)?;
+    }
     println!("\nAll {} records are in {}.", records.len(), output.display());
     Ok(())
 }

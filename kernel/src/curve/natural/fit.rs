@@ -27,6 +27,8 @@ const NOTHING: f64 = 1e-10;
 /// speed at the first end and that in the middle.
 const TELLING: f64 = 1e-6;
 const SKEWS: [f64; 2] = [0.3, -0.3];
+/// The same from the last solution's speeds, times this.
+const WARM: f64 = 1e3;
 /// The longest step, as a part of the speed.
 const LONGEST: f64 = 0.4;
 /// What the matrix is raised by where the data do not tell a direction, as a part of its diagonal.
@@ -131,11 +133,13 @@ impl<const N: usize> Known<'_, N> {
 }
 
 /// Gives the ends of a planar element the speeds and stretches with which it runs along a known curve, from those that they
-/// have. `varies` tells whether `dκ/ds` is compared, or `κ`; a misfit that is the part `enough` of what is compared will do. Returns the integral of the squared difference.
+/// have. `varies` tells whether `dκ/ds` is compared, or `κ`; a misfit that is the part `enough` of what is compared will do; a `warm` start is followed alone unless
+/// it leads to much. Returns the integral of the squared difference.
 pub(super) fn fit<const D: usize, const N: usize>(
     ends: &mut [End<D>; 2],
     known: &Known<'_, N>,
     varies: bool,
+    warm: bool,
     enough: f64,
 ) -> f64 {
     let enough = enough.max(NOTHING);
@@ -147,7 +151,7 @@ pub(super) fn fit<const D: usize, const N: usize>(
     // Speed and stretch at the first end, then at the last.
     let start = [ends[0].speed, ends[0].stretch, ends[1].speed, ends[1].stretch];
     let (mut best, telling) = settle(&shape, start, known, varies, enough);
-    if best.1 > telling {
+    if best.1 > if warm { WARM * telling } else { telling } {
         for skew in SKEWS {
             let even = 0.5 * (start[0] + start[2]);
             let [one, other] = [even * libm::exp(skew), even * libm::exp(-skew)];

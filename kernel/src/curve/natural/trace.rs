@@ -146,7 +146,7 @@ impl TrueCurve<'_> {
                 let mut ends = [before, after];
                 give_speeds(&mut ends, piece, piece * libm::sqrt(0.5 * (a * a + b * b)));
                 let known = Known { direction: &q, length, from, to };
-                fit(&mut ends, &known, fine.weights.variation > 0.0, ENOUGH);
+                fit(&mut ends, &known, fine.weights.variation > 0.0, false, ENOUGH);
                 for (end, value) in ends.iter().enumerate() {
                     fine.set_end(first + part, end, value, state);
                 }

@@ -1,0 +1,172 @@
+//! minvar by itself: a warm start against a start from the data, and what a joint costs in a long chain.
+
+#![allow(clippy::disallowed_methods, reason = "the tests may use the platform's functions")]
+
+use super::WITHIN;
+use super::task::Task;
+use crate::appendix::figure;
+use crate::ceres;
+use crate::compare::{SETS, kernel_joints};
+use minvar::curve::{Curve, Element, Functional, Joint, Options, elements_len, solve, update, workspace_len};
+use minvar::solve::{Silent, Status};
+use serde::Serialize;
+use std::fs::OpenOptions;
+use std::io::Write;
+use std::path::Path;
+use std::time::Instant;
+
+/// By how much a joint is dragged to and fro, as a part of the mean distance between joints.
+const DRAG: f64 = 0.01;
+/// Repetitions, of which the median counts.
+const REPEATS: usize = 51;
+/// How long the chains are.
+const LENGTHS: [usize; 5] = [10, 100, 1_000, 10_000, 100_000];
+/// A chain's joints stand beside a line, or inside a circle, by these parts of their distance, over and over.
+const WAVE: [f64; 5] = [0.0, 0.5, 0.2, -0.4, 0.1];
+
+#[derive(Serialize)]
+struct Line {
+    case: String,
+    peer: &'static str,
+    minvar_us: f64,
+    peer_us: f64,
+    ratio: f64,
+    us_an_element: f64,
+    linearisations_an_element: f64,
+}
+
+/// Measures, prints, and adds to the records.
+///
+/// # Errors
+///
+/// If the file cannot be written.
+///
+/// # Panics
+///
+/// If minvar refuses the data.
+pub fn run(to: &Path) -> Result<(), String> {
+    let mut lines = Vec::new();
+    println!(
+        "\nA joint dragged by a hundredth of a span: an update against a solve from the data, both to {WITHIN:e}."
+    );
+    println!("| case | update µs | an element | solve µs | ratio |\n| --- | --- | --- | --- | --- |");
+    for (id, functional) in SETS {
+        let kernel = if functional == ceres::Functional::Mec { Functional::MEC } else { Functional::MVC };
+        let figure = figure(id);
+        let task = Task::new(format!("{id} {functional:?}"), kernel_joints(&figure), figure.closed, kernel);
+        if let Some(line) = warm(&task) {
+            println!(
+                "| {} | {:.1} | {:.2} | {:.1} | {:.2} |",
+                line.case, line.minvar_us, line.us_an_element, line.peer_us, line.ratio
+            );
+            lines.push(line);
+        }
+    }
+    println!(
+        "\nA wave of so many joints, to {WITHIN:e}.\n| joints | µs a joint | beside that of 100 |\n| --- | --- | --- |"
+    );
+    for closed in [false, true] {
+        let chains: Vec<Line> = LENGTHS.iter().map(|&joints| chain(joints, closed)).collect();
+        let unit = chains[1].us_an_element;
+        for mut line in chains {
+            line.peer_us = unit;
+            line.ratio = line.us_an_element / unit;
+            println!("| {} | {:.2} | {:.2} |", line.case, line.us_an_element, line.ratio);
+            lines.push(line);
+        }
+    }
+    let failed = |error: std::io::Error| format!("{}: {error}", to.display());
+    let mut file = OpenOptions::new().append(true).open(to).map_err(failed)?;
+    for line in &lines {
+        let text = serde_json::to_string(line).map_err(|error| error.to_string())?;
+        writeln!(file, "{text}").map_err(failed)?;
+    }
+    Ok(())
+}
+
+fn median(mut of: Vec<f64>) -> f64 {
+    of.sort_by(f64::total_cmp);
+    of[of.len() / 2]
+}
+
+fn micros(work: impl FnOnce()) -> f64 {
+    let start = Instant::now();
+    work();
+    1e6 * start.elapsed().as_secs_f64()
+}
+
+/// `None` where a solve from the data does not converge.
+fn warm(task: &Task) -> Option<Line> {
+    let options = Options { functional: task.functional, relative_decrease: WITHIN, ..Options::DEFAULT };
+    let mut dragged = task.joints.clone();
+    let middle = &mut dragged[task.joints.len() / 2].position.value;
+    // The task's unit is near the mean distance.
+    (middle[0], middle[1]) = (middle[0] + DRAG, middle[1] - 0.7 * DRAG);
+    let curves = [Curve::new(&task.joints, task.closed), Curve::new(&dragged, task.closed)];
+    let len = curves.iter().map(|curve| workspace_len(curve, &options).expect("good data")).max()?;
+    let (mut workspace, mut elements) =
+        (vec![0.0; len], vec![Element::ZERO; elements_len(&curves[0], &options)]);
+    let mut linearisations = 0;
+    let (mut updates, mut solves) = (Vec::new(), Vec::new());
+    for _ in 0..REPEATS {
+        solves.push(micros(|| {
+            let report = solve(&curves[0], &options, &mut workspace, &mut elements, &mut [], &mut Silent);
+            linearisations = usize::from(report.expect("good data").status != Status::Converged);
+        }));
+        if linearisations > 0 {
+            return None;
+        }
+        for curve in [&curves[1], &curves[0]] {
+            updates.push(micros(|| {
+                let report = update(curve, &options, &mut workspace, &mut elements, &mut [], &mut Silent);
+                linearisations = report.expect("good data").linearisations;
+            }));
+        }
+    }
+    let (minvar_us, peer_us, count) = (median(updates), median(solves), elements.len() as f64);
+    Some(Line {
+        case: task.name.clone(),
+        peer: "minvar from the data",
+        minvar_us,
+        peer_us,
+        ratio: peer_us / minvar_us,
+        us_an_element: minvar_us / count,
+        linearisations_an_element: linearisations as f64 / count,
+    })
+}
+
+fn chain(count: usize, closed: bool) -> Line {
+    let joints: Vec<Joint> = (0..count)
+        .map(|i| {
+            let (along, aside) = (i as f64, WAVE[i % WAVE.len()]);
+            if !closed {
+                return Joint::at([along, aside, 0.0]);
+            }
+            let (angle, radius) =
+                (std::f64::consts::TAU * along / count as f64, count as f64 / std::f64::consts::TAU);
+            let out = radius - aside * (1.0f64).min(0.05 * radius);
+            Joint::at([out * angle.cos(), out * angle.sin(), 0.0])
+        })
+        .collect();
+    let curve = Curve::new(&joints, closed);
+    let options = Options { relative_decrease: WITHIN, ..Options::DEFAULT };
+    let mut workspace = vec![0.0; workspace_len(&curve, &options).expect("good data")];
+    let mut elements = vec![Element::ZERO; elements_len(&curve, &options)];
+    let mut linearisations = 0;
+    let times = (0..(100_000 / count).clamp(3, REPEATS)).map(|_| {
+        micros(|| {
+            let report = solve(&curve, &options, &mut workspace, &mut elements, &mut [], &mut Silent);
+            linearisations = report.expect("good data").linearisations;
+        })
+    });
+    let minvar_us = median(times.collect());
+    Line {
+        case: format!("{count} joints, {}", if closed { "closed" } else { "open" }),
+        peer: "100 joints",
+        minvar_us,
+        peer_us: 0.0,
+        ratio: 0.0,
+        us_an_element: minvar_us / count as f64,
+        linearisations_an_element: linearisations as f64 / count as f64,
+    }
+}
