@@ -13,8 +13,8 @@ use super::fairness::{Density, Shape};
 use super::model::{Division, Model};
 use super::natural::TrueCurve;
 use super::passes::Passes;
+use super::rows::place;
 use super::start::refine;
-use crate::basis::hermite;
 use crate::solve::{Outcome, Problem, Status, WorkspaceTooSmall};
 use nalgebra::SVector;
 
@@ -229,7 +229,7 @@ fn compare<const D: usize>(
             let rows = coarse.rows(coarse_first + element, coarse_state);
             for sample in 0..SAMPLES {
                 let t = (sample as f64 + 0.5) / SAMPLES as f64;
-                let [point, _, _] = at(&rows, t);
+                let [point, ..] = place(&rows, t);
                 let place = (element as f64 + t) / count * fine_count;
                 let part = libm::floor(place).min(fine_count - 1.0);
                 let rows = fine.rows(fine_first + part as usize, fine_state);
@@ -242,12 +242,6 @@ fn compare<const D: usize>(
     }
 }
 
-/// Point and first two derivatives.
-fn at<const D: usize>(rows: &[SVector<f64, D>; 6], t: f64) -> [SVector<f64, D>; 3] {
-    let basis = hermite::basis(t);
-    [0, 1, 2].map(|order: usize| super::rows::combine(rows, &basis[order]))
-}
-
 /// The distance of a point from an element near a parameter, beyond its ends too.
 pub(super) fn distance<const D: usize>(
     point: &SVector<f64, D>,
@@ -257,7 +251,7 @@ pub(super) fn distance<const D: usize>(
     let mut t = near;
     let mut best = f64::INFINITY;
     for _ in 0..4 {
-        let [here, first, second] = at(rows, t);
+        let [here, first, second] = place(rows, t);
         let off = here - point;
         let square = off.dot(&off);
         if !(square < best) {

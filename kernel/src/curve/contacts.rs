@@ -10,9 +10,8 @@ use super::fairness::{Density, Shape};
 use super::model::{Contact, Model};
 use super::obstacle::Side;
 use super::passes::{Passes, weights_of_sums};
-use super::rows::combine;
+use super::rows::place;
 use super::start::{cut, refine};
-use crate::basis::hermite;
 use crate::solve::{BlockList, Outcome, Problem, Status, WorkspaceTooSmall};
 use nalgebra::SVector;
 
@@ -167,7 +166,7 @@ impl<const D: usize> Foot<D> {
             let rows = model.rows(element, state);
             for sample in 0..=SAMPLES {
                 let t = sample as f64 / SAMPLES as f64;
-                let off = combine(&rows, &hermite::basis(t)[0]) - point;
+                let off = place(&rows, t)[0] - point;
                 let square = off.dot(&off);
                 if best.is_none_or(|(least, ..)| square < least) {
                     best = Some((square, element, t));
@@ -178,8 +177,7 @@ impl<const D: usize> Foot<D> {
         let count = model.element_count();
         let mut rows = model.rows(element, state);
         for _ in 0..MOST_STEPS {
-            let basis = hermite::basis(t);
-            let [here, first, second] = [0, 1, 2].map(|order: usize| combine(&rows, &basis[order]));
+            let [here, first, second] = place(&rows, t);
             let off = here - point;
             let slope = first.dot(&first) + off.dot(&second);
             let slope = if slope > 0.0 { slope } else { first.dot(&first) };
@@ -191,16 +189,14 @@ impl<const D: usize> Foot<D> {
             if next != t && !ends {
                 let beyond = model.rows(over % count, state);
                 let back = if next > 1.0 { 0.0 } else { 1.0 };
-                let basis = hermite::basis(back);
-                let (there, ahead) = (combine(&beyond, &basis[0]), combine(&beyond, &basis[1]));
+                let [there, ahead, _] = place(&beyond, back);
                 // At a corner both sides may lead back to it.
                 if (ahead.dot(&(point - there)) > 0.0) == (next > 1.0) {
                     (element, t, rows) = (over % count, back, beyond);
                 }
             }
         }
-        let basis = hermite::basis(t);
-        let (here, first) = (combine(&rows, &basis[0]), combine(&rows, &basis[1]));
+        let [here, first, _] = place(&rows, t);
         let off = point - here;
         let (distance, speed) = (libm::sqrt(off.dot(&off)), libm::sqrt(first.dot(&first)));
         let mut tangent = first / speed;

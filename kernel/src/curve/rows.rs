@@ -7,6 +7,7 @@
 use super::fairness::{Density, Local, Normal, Shape, Weighted, add_evenness, evenness, quickening};
 use super::functional::Weights;
 use super::space::Tie;
+use crate::basis::hermite;
 use crate::basis::lanes::Lanes;
 use crate::basis::mirrored::{COORDINATES, EVEN, Pairs};
 use nalgebra::SVector;
@@ -19,6 +20,12 @@ pub(super) fn combine<const D: usize>(rows: &[SVector<f64, D>; 6], weights: &[f6
         sum += rows[a] * weights[a];
     }
     sum
+}
+
+/// `C, C', C''` of an element at a parameter.
+pub(super) fn place<const D: usize>(rows: &[SVector<f64, D>; 6], t: f64) -> [SVector<f64, D>; 3] {
+    let basis = hermite::basis(t);
+    [0, 1, 2].map(|order: usize| combine(rows, &basis[order]))
 }
 
 /// `C', C'', C'''` of an element at a point of a rule.

@@ -2,59 +2,23 @@
 
 use super::accuracy::{Aim, Level, divide, divide_true};
 use super::check::{check, check_elements, check_length, check_obstacles};
-use super::contacts::{Extended, Touching, keep_clear, most_contacts};
+use super::contacts::{Touching, keep_clear, most_contacts};
 use super::element::Element;
 use super::error::{CurveError, OptionName};
 use super::fairness::{Density, Shape};
-use super::figures::{Figures, halves};
 use super::functional::{Functional, Weights};
-use super::joint::{Curve, Given};
-use super::model::{Division, Goal, Model};
+use super::joint::Curve;
+use super::layout::Layout;
+use super::model::{Division, Model};
 use super::natural;
 use super::options::Options;
 use super::passes::{self, Passes};
 use super::placement::{Place, Placement};
+use super::report::{Report, figures_of, functional_scale, hand_over};
 use super::space::Space;
 use super::start::{Start, adopt, refine};
 use crate::basis::quadrature::MAX_POINTS;
-use crate::solve::{self, Observer, Outcome, Problem, Record, Status, WorkspaceTooSmall};
-
-/// How a curve came out. All figures in the caller's units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Report {
-    /// How the computation ended.
-    pub status: Status,
-    /// The number of iterations: trial steps, accepted or not.
-    pub iterations: usize,
-    /// How often an element was linearised (cost, gradient and Hessian), over all elements: the work that was done.
-    pub linearisations: usize,
-    /// The number of unknowns that the solver varied.
-    pub unknowns: usize,
-    /// Whether the curve was computed in a plane.
-    pub planar: bool,
-    /// How many elements the curve has: as many as [`elements_len`] says, or fewer with a tolerance.
-    pub elements: usize,
-    /// The estimated distance from the true minimum, where a tolerance was asked for; infinite where there is no estimate.
-    pub error: f64,
-    /// The functional's value by the rule that was minimised with.
-    pub value: f64,
-    /// The functional's value of the resulting elements by a finer rule, 32 points on each half. Where it differs from
-    /// `value` by more than rounding, the curve is too wild for its elements: take more of them.
-    pub fine_value: f64,
-    /// The length `L`.
-    pub length: f64,
-    /// The variation of curvature `V = ∫ (dκ/ds)² ds`.
-    pub variation: f64,
-    /// The bending energy `E = ∫ κ² ds`.
-    pub bending: f64,
-    /// The largest component of the functional's gradient by the unknowns, each times the unknown's natural size,
-    /// as a fraction of the functional; infinite where little was asked for (a `relative_decrease` above 1e-9) and no step of
-    /// the elements was needed for it.
-    pub gradient: f64,
-    /// The decrease of the functional that another Newton step would promise; infinite where the Hessian is not
-    /// positive definite. Where no step was needed: an estimate of what the functional exceeds the true curve's by.
-    pub decrement: f64,
-}
+use crate::solve::{Observer, Outcome, Problem, Record, Status, WorkspaceTooSmall};
 
 /// The number of elements that a curve has, `spans × elements_per_span`; with a tolerance or obstacles the most that it may
 /// have: an obstacle counts as four spans then.
@@ -151,7 +115,7 @@ pub fn update(
 
 /// What a search starts from.
 #[derive(Clone, Copy, PartialEq)]
-enum Begin {
+pub(super) enum Begin {
     /// The data, by one of [`starts`] rules.
     Data(usize),
     /// The elements.
@@ -160,7 +124,7 @@ enum Begin {
 
 /// How many starts a curve's data offer: the usual one, one with each joint's start tangent turned round, one with each
 /// span bent the other way or further.
-const fn starts(curve: &Curve<'_>) -> usize {
+pub(super) const fn starts(curve: &Curve<'_>) -> usize {
     1 + curve.joints.len() + curve.spans()
 }
 
@@ -182,92 +146,7 @@ impl Begin {
     }
 }
 
-/// Looks for several minima of one curve: from the usual start values, from each start tangent turned round, and from each
-/// span bent the other way or further (thesis 4.10: curves with and without a loop). The list is what these starts lead
-/// to; it need not be complete.
-///
-/// `reports` receives a report a minimum, the lowest first, as many as it has room for; `elements` holds
-/// `(reports.len() + 1) ·` [`elements_len`] elements, of which the first [`elements_len`] receive the first minimum's, and so on; the
-/// last are scratch. The observer sees every solve begin with iteration 1. Returns the number of minima.
-///
-/// # Errors
-/// As [`solve()`].
-pub fn minima(
-    curve: &Curve<'_>,
-    options: &Options,
-    workspace: &mut [f64],
-    elements: &mut [Element],
-    reports: &mut [Report],
-    observer: &mut dyn Observer,
-) -> Result<usize, CurveError> {
-    let figures = |report: &Report| [report.value, report.length, report.bending];
-    minima_as(curve, options, workspace, elements, reports, |report| *report, figures, observer)
-}
-
-/// [`minima`] into reports of another form, which can be made of ours. `figures` tells value, length and bending of one that
-/// was made; it is asked of no other.
-///
-/// # Errors
-/// As [`minima`].
-#[doc(hidden)]
-#[expect(clippy::too_many_arguments, reason = "the caller's, and two conversions")]
-pub fn minima_as<R: Copy>(
-    curve: &Curve<'_>,
-    options: &Options,
-    workspace: &mut [f64],
-    elements: &mut [Element],
-    reports: &mut [R],
-    make: impl Fn(&Report) -> R,
-    figures: impl Fn(&R) -> [f64; 3],
-    observer: &mut dyn Observer,
-) -> Result<usize, CurveError> {
-    let len = elements_len(curve, options);
-    let (needed, given) = (len.saturating_mul(reports.len() + 1), elements.len());
-    if given < needed {
-        return Err(CurveError::ElementsTooShort { needed, given });
-    }
-    let mut found = 0;
-    for start in 0..starts(curve) {
-        let (kept, rest) = elements.split_at_mut(reports.len() * len);
-        let scratch = &mut rest[..len];
-        let report = begin(curve, options, workspace, scratch, &mut [], observer, Begin::Data(start))?;
-        if report.status == Status::Cancelled {
-            break;
-        }
-        if report.status != Status::Converged {
-            continue;
-        }
-        let same = |other: &R| {
-            let [value, length, bending] = figures(other);
-            // Circles have no value: what is nothing beside that of bending once around is the same nothing.
-            let nothing = NOTHING * bending * length * functional_scale(options, length);
-            (report.value - value).abs() <= SAME_VALUE * (report.value + value) + nothing
-                && (report.length - length).abs() <= SAME_LENGTH * report.length
-        };
-        if reports[..found].iter().any(same) {
-            continue;
-        }
-        let lower = |other: &R| report.value < figures(other)[0];
-        let place = reports[..found].iter().position(lower).unwrap_or(found);
-        if place == reports.len() {
-            continue;
-        }
-        let last = found.min(reports.len() - 1);
-        reports.copy_within(place..last, place + 1);
-        kept.copy_within(place * len..last * len, (place + 1) * len);
-        reports[place] = make(&report);
-        kept[place * len..(place + 1) * len].copy_from_slice(scratch);
-        found = last + 1;
-    }
-    Ok(found)
-}
-
-/// Minima whose values and lengths differ by less than these fractions are the same: one element a span has several for one
-/// shape.
-const SAME_VALUE: f64 = 1e-4;
-const SAME_LENGTH: f64 = 1e-3;
-
-fn begin(
+pub(super) fn begin(
     curve: &Curve<'_>,
     options: &Options,
     workspace: &mut [f64],
@@ -321,72 +200,6 @@ fn model<'a, const D: usize>(curve: &Curve<'a>, options: &Options, place: &Place
         fitted: false,
         natural_cost: 0.0,
         start_length: 0.0,
-    }
-}
-
-/// The memory of a curve, in `f64`s: one function that sizes it and carves it.
-struct Layout {
-    state: usize,
-    /// What a tolerance needs: nodes and spans.
-    division: [usize; 2],
-    /// The true curve's.
-    trace: usize,
-    work: usize,
-}
-
-impl Layout {
-    fn of<const D: usize>(model: &Model<'_, D>, options: &Options) -> Self
-    where
-        Shape<D>: Density<D>,
-    {
-        let spans = model.curve.spans();
-        // A given length couples all elements.
-        let goal = (options.length > 0.0).then_some(Goal { target: 1.0, multiplier: 0.0, penalty: 1.0 });
-        let model = &Model { goal, ..*model };
-        let natural = natural::memory_len(model.curve.joints.len(), spans, model.curve.closed);
-        let contacts = most_contacts(model.curve.obstacles.len());
-        let more = contacts * options.elements_per_span as usize;
-        let extended = Extended { model, more };
-        let (state, work) = if more > 0 {
-            (extended.state_len(), solve::workspace_len(&extended, 1))
-        } else {
-            (model.state_len(), solve::workspace_len(model, 1))
-        };
-        let divides = options.tolerance > 0.0 || more > 0;
-        Self {
-            state,
-            division: if divides { [model.node_count() + more, spans.max(contacts)] } else { [0; 2] },
-            trace: if options.elements_per_span > 1 && D == 2 {
-                natural::trace_len(model.curve.joints.len(), spans, model.curve.closed)
-            } else {
-                0
-            },
-            work: work.max(natural),
-        }
-    }
-
-    /// State, next state, marks, next marks, counts, next counts, errors, true curve, work.
-    fn parts(&self) -> [usize; 9] {
-        let [nodes, spans] = self.division;
-        let next = if nodes > 0 { self.state } else { 0 };
-        [self.state, next, nodes, nodes, spans, spans, spans, self.trace, self.work]
-    }
-
-    fn len(&self) -> usize {
-        self.parts().iter().sum()
-    }
-
-    fn carve<'w>(&self, memory: &'w mut [f64]) -> Result<[&'w mut [f64]; 9], CurveError> {
-        let (needed, given) = (self.len(), memory.len());
-        if given < needed {
-            return Err(CurveError::WorkspaceTooSmall { needed, given });
-        }
-        let mut rest = memory;
-        Ok(self.parts().map(|len| {
-            let (part, tail) = core::mem::take(&mut rest).split_at_mut(len);
-            rest = tail;
-            part
-        }))
     }
 }
 
@@ -622,78 +435,6 @@ where
     }
 }
 
-fn figures_of<const D: usize>(model: &Model<'_, D>, state: &[f64]) -> Figures
-where
-    Shape<D>: Density<D>,
-{
-    let mut figures = Figures::default();
-    (0..model.element_count()).for_each(|element| {
-        let rows = model.rows(element, state);
-        figures.add(&rows);
-        if let Some(space) = &model.space {
-            figures.space += halves(&rows).map(|half| space.value(&half, MAX_POINTS)).iter().sum::<f64>();
-        }
-    });
-    figures
-}
-
-/// Writes the elements, and says what they are worth.
-fn hand_over<const D: usize>(
-    model: &Model<'_, D>,
-    outcome: &Outcome,
-    passes: &Passes<'_>,
-    state: &[f64],
-    elements: &mut [Element],
-    options: &Options,
-) -> Report
-where
-    Shape<D>: Density<D>,
-{
-    let count = model.element_count();
-    let elements = &mut elements[..count];
-    for (index, element) in elements.iter_mut().enumerate() {
-        *element = world_element(model, index, state);
-    }
-    let outcome =
-        Outcome { iterations: passes.iterations, linearisations: passes.linearisations, ..*outcome };
-    let mut model = *model;
-    passes::soften_where_straight(&mut model, state);
-    let model = &model;
-    let value = if model.space.is_some() { passes::value_of(model, state) } else { outcome.value };
-    let outcome = Outcome { value, ..outcome };
-    let figures = figures_of(model, state);
-    let mut report = report(model, &outcome, elements, &figures, options);
-    let growth = model.rough_length(state) / model.start_length;
-    let gave_up = matches!(report.status, Status::IterationLimit | Status::Stalled);
-    if gave_up && growth > if passes.hurries() { GROWS } else { SUSPECT_GROWTH } {
-        report.status = Status::Unbounded;
-    }
-    if report.status == Status::Converged {
-        let regular = figures.irregular == 0;
-        let natural = model.natural_cost() * functional_scale(options, model.place.unit);
-        let trusted =
-            (report.fine_value - report.value).abs() <= TRUSTED * (report.value + NOTHING * natural);
-        let grown = growth > SUSPECT_GROWTH;
-        if !(regular && trusted) {
-            // What was minimised is not what the elements are: no minimum was found.
-            report.status = if grown { Status::Unbounded } else { Status::Stalled };
-        } else if growth > GREAT_GROWTH || (grown && !outcome.decrement.is_finite()) {
-            // A loop on its way to infinity costs next to nothing beside the rest of the curve.
-            report.status = Status::Unbounded;
-        }
-    }
-    report
-}
-
-/// What a functional's value in the local system is multiplied by to be in the caller's.
-fn functional_scale(options: &Options, unit: f64) -> f64 {
-    match options.functional.scale_power() {
-        0 => 1.0,
-        1 => 1.0 / unit,
-        _ => 1.0 / unit / unit / unit,
-    }
-}
-
 /// With one element a span on the way to more, a functional to this fraction is enough.
 const COARSE_DECREASE: f64 = 1e-7;
 /// By how much the first tension of a continuation outweighs the functional.
@@ -702,96 +443,12 @@ const STRONG_PULL: f64 = 10.0;
 const CONTINUATION_DECREASE: f64 = 1e-4;
 /// Where one element a span has no minimum, a tolerance begins with so many.
 const LEAST_PARTS: usize = 4;
-/// How far a finer quadrature may be off, as a fraction of the functional.
-const TRUSTED: f64 = 1e-4;
-/// A functional below this part of what is natural for the size is nothing.
-const NOTHING: f64 = 1e-9;
-/// A curve that is wrong, and grew by more than this from its start, was on its way to infinity.
-const SUSPECT_GROWTH: f64 = 10.0;
-/// How much a curve must have grown that grew already when its directions alone were solved for, and ends in no minimum.
-const GROWS: f64 = 3.0;
-/// No curve with a minimum grows by more than this.
-const GREAT_GROWTH: f64 = 50.0;
-
-/// An element in the caller's system, fixed positions to the last bit.
-fn world_element<const D: usize>(model: &Model<'_, D>, index: usize, state: &[f64]) -> Element
-where
-    Shape<D>: Density<D>,
-{
-    let (place, local) = (&model.place, model.rows(index, state));
-    let mut rows = [[0.0; 3]; 6];
-    for (a, row) in rows.iter_mut().enumerate() {
-        *row = if a == 0 || a == 5 { place.world_point(&local[a]) } else { place.world_vector(&local[a]) };
-    }
-    for (end, row) in [0, 5].into_iter().enumerate() {
-        if let Some(joint) = model.joint(model.node(index, end))
-            && joint.position.given == Given::FIXED
-        {
-            rows[row] = joint.position.value;
-        }
-    }
-    Element { rows }
-}
-
-fn report<const D: usize>(
-    model: &Model<'_, D>,
-    outcome: &Outcome,
-    elements: &[Element],
-    figures: &Figures,
-    options: &Options,
-) -> Report
-where
-    Shape<D>: Density<D>,
-{
-    let scale = functional_scale(options, model.place.unit);
-    // Of the local elements: the caller's are rounded where they lie far from the origin.
-    let unit = model.place.unit;
-    let (variation, bending, length) =
-        (figures.variation / unit / unit / unit, figures.bending / unit, figures.length * unit);
-    let plain = if let Some(space) = &model.space {
-        figures.space * scale + space.plain_variation() * variation + options.bending * bending
-    } else if options.functional.bends() {
-        bending * (1.0 + options.bending)
-    } else {
-        variation + options.bending * bending
-    } + options.tension * length;
-    let fine_value = match options.functional.length_power() {
-        0 => plain,
-        1 => plain * length,
-        _ => plain * length * length * length,
-    };
-    // A reference is no property of the elements: its part is measured by the finest rule there is.
-    let fine_value = if model.curve.reference.is_some() {
-        let fine = Model { points: MAX_POINTS, guarded: false, gauge: 0.0, ..*model };
-        let value =
-            |element: usize| fine.sums_of_rows(element, &model.place.local_rows(&elements[element]))[0];
-        (0..elements.len()).map(value).sum::<f64>() * scale
-    } else {
-        fine_value
-    };
-    Report {
-        status: outcome.status,
-        iterations: outcome.iterations,
-        linearisations: outcome.linearisations,
-        unknowns: (0..model.blocks()).map(|block| model.dofs(block)).sum(),
-        planar: D == 2,
-        elements: elements.len(),
-        error: 0.0,
-        value: outcome.value * scale,
-        fine_value,
-        length,
-        variation,
-        bending,
-        gradient: outcome.gradient / outcome.value.max(f64::MIN_POSITIVE),
-        decrement: outcome.decrement * scale,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::basis::hermite;
     use crate::curve::joint::{Joint, Quantity};
+    use crate::solve as solver;
     use nalgebra::SVector;
 
     fn row(x: f64, y: f64) -> SVector<f64, 2> {
@@ -866,7 +523,7 @@ mod tests {
             model.begin_ties(state);
             // From the node between the elements of a span to a joint: both ends are tied.
             let element = 3;
-            let mut list = solve::BlockList::new();
+            let mut list = solver::BlockList::new();
             model.element_blocks(element, &mut list);
             let dofs: [usize; 3] = core::array::from_fn(|k| model.dofs(list[k]));
             let count: usize = dofs.iter().sum();
@@ -898,11 +555,11 @@ mod tests {
                 element,
                 state,
                 &mut gradient[..count],
-                &mut matrix[..solve::packed(count, 0)],
+                &mut matrix[..solver::packed(count, 0)],
             );
             assert!((value - cost(&[])).abs() <= 1e-12 * value.abs());
             let most = (0..count)
-                .fold(0.0f64, |most, i| most.max((matrix[solve::packed(i, i)] * sizes[i] * sizes[i]).abs()));
+                .fold(0.0f64, |most, i| most.max((matrix[solver::packed(i, i)] * sizes[i] * sizes[i]).abs()));
             let h = 1e-4;
             for i in 0..count {
                 let slope = (cost(&[(i, h * sizes[i])]) - cost(&[(i, -h * sizes[i])])) / (2.0 * h);
@@ -911,7 +568,7 @@ mod tests {
                     let mut at = |a: f64, b: f64| cost(&[(i, a * h * sizes[i]), (j, b * h * sizes[j])]);
                     let bend =
                         (at(1.0, 1.0) - at(1.0, -1.0) - at(-1.0, 1.0) + at(-1.0, -1.0)) / (4.0 * h * h);
-                    let found = matrix[solve::packed(i, j)] * sizes[i] * sizes[j];
+                    let found = matrix[solver::packed(i, j)] * sizes[i] * sizes[j];
                     assert!((bend - found).abs() < 1e-5 * most, "{i} {j}: {bend} {found}");
                 }
             }

@@ -13,8 +13,7 @@ use super::fairness::{Density, Shape};
 use super::joint::{Continuity, Given, Joint};
 use super::model::Model;
 use super::placement::Placement;
-use super::rows::combine;
-use crate::basis::hermite;
+use super::rows::place;
 use nalgebra::SVector;
 
 /// The speed at the ends of the quintic of least variation on an arc of turning `θ` is the arc's length times
@@ -533,8 +532,7 @@ pub(super) fn cut<const D: usize>(
     parts: f64,
     before: &End<D>,
 ) -> End<D> {
-    let basis = hermite::basis(t);
-    let [point, first, second] = [0, 1, 2].map(|order: usize| combine(rows, &basis[order]));
+    let [point, first, second] = place(rows, t);
     let end = end_of(&point, &first, &second, Some(before));
     End { speed: end.speed / parts, stretch: end.stretch / (parts * parts), ..end }
 }

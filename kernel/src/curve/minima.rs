@@ -1,0 +1,94 @@
+//! Several minima of one curve.
+
+use super::element::Element;
+use super::error::CurveError;
+use super::joint::Curve;
+use super::options::Options;
+use super::report::{NOTHING, Report, functional_scale};
+use super::solve::{Begin, begin, elements_len, starts};
+use crate::solve::{Observer, Status};
+
+/// Looks for several minima of one curve: from the usual start values, from each start tangent turned round, and from each
+/// span bent the other way or further (thesis 4.10: curves with and without a loop). The list is what these starts lead
+/// to; it need not be complete.
+///
+/// `reports` receives a report a minimum, the lowest first, as many as it has room for; `elements` holds
+/// `(reports.len() + 1) ·` [`elements_len`] elements, of which the first [`elements_len`] receive the first minimum's, and so on; the
+/// last are scratch. The observer sees every solve begin with iteration 1. Returns the number of minima.
+///
+/// # Errors
+/// As [`super::solve()`].
+pub fn minima(
+    curve: &Curve<'_>,
+    options: &Options,
+    workspace: &mut [f64],
+    elements: &mut [Element],
+    reports: &mut [Report],
+    observer: &mut dyn Observer,
+) -> Result<usize, CurveError> {
+    let figures = |report: &Report| [report.value, report.length, report.bending];
+    minima_as(curve, options, workspace, elements, reports, |report| *report, figures, observer)
+}
+
+/// [`minima`] into reports of another form, which can be made of ours. `figures` tells value, length and bending of one that
+/// was made; it is asked of no other.
+///
+/// # Errors
+/// As [`minima`].
+#[doc(hidden)]
+#[expect(clippy::too_many_arguments, reason = "the caller's, and two conversions")]
+pub fn minima_as<R: Copy>(
+    curve: &Curve<'_>,
+    options: &Options,
+    workspace: &mut [f64],
+    elements: &mut [Element],
+    reports: &mut [R],
+    make: impl Fn(&Report) -> R,
+    figures: impl Fn(&R) -> [f64; 3],
+    observer: &mut dyn Observer,
+) -> Result<usize, CurveError> {
+    let len = elements_len(curve, options);
+    let (needed, given) = (len.saturating_mul(reports.len() + 1), elements.len());
+    if given < needed {
+        return Err(CurveError::ElementsTooShort { needed, given });
+    }
+    let mut found = 0;
+    for start in 0..starts(curve) {
+        let (kept, rest) = elements.split_at_mut(reports.len() * len);
+        let scratch = &mut rest[..len];
+        let report = begin(curve, options, workspace, scratch, &mut [], observer, Begin::Data(start))?;
+        if report.status == Status::Cancelled {
+            break;
+        }
+        if report.status != Status::Converged {
+            continue;
+        }
+        let same = |other: &R| {
+            let [value, length, bending] = figures(other);
+            // Circles have no value: what is nothing beside that of bending once around is the same nothing.
+            let nothing = NOTHING * bending * length * functional_scale(options, length);
+            (report.value - value).abs() <= SAME_VALUE * (report.value + value) + nothing
+                && (report.length - length).abs() <= SAME_LENGTH * report.length
+        };
+        if reports[..found].iter().any(same) {
+            continue;
+        }
+        let lower = |other: &R| report.value < figures(other)[0];
+        let place = reports[..found].iter().position(lower).unwrap_or(found);
+        if place == reports.len() {
+            continue;
+        }
+        let last = found.min(reports.len() - 1);
+        reports.copy_within(place..last, place + 1);
+        kept.copy_within(place * len..last * len, (place + 1) * len);
+        reports[place] = make(&report);
+        kept[place * len..(place + 1) * len].copy_from_slice(scratch);
+        found = last + 1;
+    }
+    Ok(found)
+}
+
+/// Minima whose values and lengths differ by less than these fractions are the same: one element a span has several for one
+/// shape.
+const SAME_VALUE: f64 = 1e-4;
+const SAME_LENGTH: f64 = 1e-3;

@@ -1,0 +1,206 @@
+//! What came out: elements in the caller's system, figures, and whether they can be believed.
+
+use super::element::Element;
+use super::fairness::{Density, Shape};
+use super::figures::{Figures, halves};
+use super::joint::Given;
+use super::model::Model;
+use super::options::Options;
+use super::passes::{self, Passes};
+use crate::basis::quadrature::MAX_POINTS;
+use crate::solve::{Outcome, Problem, Status};
+
+/// How a curve came out. All figures in the caller's units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Report {
+    /// How the computation ended.
+    pub status: Status,
+    /// The number of iterations: trial steps, accepted or not.
+    pub iterations: usize,
+    /// How often an element was linearised (cost, gradient and Hessian), over all elements: the work that was done.
+    pub linearisations: usize,
+    /// The number of unknowns that the solver varied.
+    pub unknowns: usize,
+    /// Whether the curve was computed in a plane.
+    pub planar: bool,
+    /// How many elements the curve has: as many as [`super::elements_len`] says, or fewer with a tolerance.
+    pub elements: usize,
+    /// The estimated distance from the true minimum, where a tolerance was asked for; infinite where there is no estimate.
+    pub error: f64,
+    /// The functional's value by the rule that was minimised with.
+    pub value: f64,
+    /// The functional's value of the resulting elements by a finer rule, 32 points on each half. Where it differs from
+    /// `value` by more than rounding, the curve is too wild for its elements: take more of them.
+    pub fine_value: f64,
+    /// The length `L`.
+    pub length: f64,
+    /// The variation of curvature `V = ∫ (dκ/ds)² ds`.
+    pub variation: f64,
+    /// The bending energy `E = ∫ κ² ds`.
+    pub bending: f64,
+    /// The largest component of the functional's gradient by the unknowns, each times the unknown's natural size,
+    /// as a fraction of the functional; infinite where little was asked for (a `relative_decrease` above 1e-9) and no step of
+    /// the elements was needed for it.
+    pub gradient: f64,
+    /// The decrease of the functional that another Newton step would promise; infinite where the Hessian is not
+    /// positive definite. Where no step was needed: an estimate of what the functional exceeds the true curve's by.
+    pub decrement: f64,
+}
+
+/// The figures of a model's elements.
+pub(super) fn figures_of<const D: usize>(model: &Model<'_, D>, state: &[f64]) -> Figures
+where
+    Shape<D>: Density<D>,
+{
+    let mut figures = Figures::default();
+    (0..model.element_count()).for_each(|element| {
+        let rows = model.rows(element, state);
+        figures.add(&rows);
+        if let Some(space) = &model.space {
+            figures.space += halves(&rows).map(|half| space.value(&half, MAX_POINTS)).iter().sum::<f64>();
+        }
+    });
+    figures
+}
+
+/// Writes the elements, and says what they are worth.
+pub(super) fn hand_over<const D: usize>(
+    model: &Model<'_, D>,
+    outcome: &Outcome,
+    passes: &Passes<'_>,
+    state: &[f64],
+    elements: &mut [Element],
+    options: &Options,
+) -> Report
+where
+    Shape<D>: Density<D>,
+{
+    let count = model.element_count();
+    let elements = &mut elements[..count];
+    for (index, element) in elements.iter_mut().enumerate() {
+        *element = world_element(model, index, state);
+    }
+    let outcome =
+        Outcome { iterations: passes.iterations, linearisations: passes.linearisations, ..*outcome };
+    let mut model = *model;
+    passes::soften_where_straight(&mut model, state);
+    let model = &model;
+    let value = if model.space.is_some() { passes::value_of(model, state) } else { outcome.value };
+    let outcome = Outcome { value, ..outcome };
+    let figures = figures_of(model, state);
+    let mut report = report(model, &outcome, elements, &figures, options);
+    let growth = model.rough_length(state) / model.start_length;
+    let gave_up = matches!(report.status, Status::IterationLimit | Status::Stalled);
+    if gave_up && growth > if passes.hurries() { GROWS } else { SUSPECT_GROWTH } {
+        report.status = Status::Unbounded;
+    }
+    if report.status == Status::Converged {
+        let regular = figures.irregular == 0;
+        let natural = model.natural_cost() * functional_scale(options, model.place.unit);
+        let trusted =
+            (report.fine_value - report.value).abs() <= TRUSTED * (report.value + NOTHING * natural);
+        let grown = growth > SUSPECT_GROWTH;
+        if !(regular && trusted) {
+            // What was minimised is not what the elements are: no minimum was found.
+            report.status = if grown { Status::Unbounded } else { Status::Stalled };
+        } else if growth > GREAT_GROWTH || (grown && !outcome.decrement.is_finite()) {
+            // A loop on its way to infinity costs next to nothing beside the rest of the curve.
+            report.status = Status::Unbounded;
+        }
+    }
+    report
+}
+
+/// What a functional's value in the local system is multiplied by to be in the caller's.
+pub(super) fn functional_scale(options: &Options, unit: f64) -> f64 {
+    match options.functional.scale_power() {
+        0 => 1.0,
+        1 => 1.0 / unit,
+        _ => 1.0 / unit / unit / unit,
+    }
+}
+
+/// How far a finer quadrature may be off, as a fraction of the functional.
+const TRUSTED: f64 = 1e-4;
+/// A functional below this part of what is natural for the size is nothing.
+pub(super) const NOTHING: f64 = 1e-9;
+/// A curve that is wrong, and grew by more than this from its start, was on its way to infinity.
+const SUSPECT_GROWTH: f64 = 10.0;
+/// How much a curve must have grown that grew already when its directions alone were solved for, and ends in no minimum.
+const GROWS: f64 = 3.0;
+/// No curve with a minimum grows by more than this.
+const GREAT_GROWTH: f64 = 50.0;
+
+/// An element in the caller's system, fixed positions to the last bit.
+fn world_element<const D: usize>(model: &Model<'_, D>, index: usize, state: &[f64]) -> Element
+where
+    Shape<D>: Density<D>,
+{
+    let (place, local) = (&model.place, model.rows(index, state));
+    let mut rows = [[0.0; 3]; 6];
+    for (a, row) in rows.iter_mut().enumerate() {
+        *row = if a == 0 || a == 5 { place.world_point(&local[a]) } else { place.world_vector(&local[a]) };
+    }
+    for (end, row) in [0, 5].into_iter().enumerate() {
+        if let Some(joint) = model.joint(model.node(index, end))
+            && joint.position.given == Given::FIXED
+        {
+            rows[row] = joint.position.value;
+        }
+    }
+    Element { rows }
+}
+
+fn report<const D: usize>(
+    model: &Model<'_, D>,
+    outcome: &Outcome,
+    elements: &[Element],
+    figures: &Figures,
+    options: &Options,
+) -> Report
+where
+    Shape<D>: Density<D>,
+{
+    let scale = functional_scale(options, model.place.unit);
+    // Of the local elements: the caller's are rounded where they lie far from the origin.
+    let unit = model.place.unit;
+    let (variation, bending, length) =
+        (figures.variation / unit / unit / unit, figures.bending / unit, figures.length * unit);
+    let plain = if let Some(space) = &model.space {
+        figures.space * scale + space.plain_variation() * variation + options.bending * bending
+    } else if options.functional.bends() {
+        bending * (1.0 + options.bending)
+    } else {
+        variation + options.bending * bending
+    } + options.tension * length;
+    let fine_value = match options.functional.length_power() {
+        0 => plain,
+        1 => plain * length,
+        _ => plain * length * length * length,
+    };
+    // A reference is no property of the elements: its part is measured by the finest rule there is.
+    let fine_value = if model.curve.reference.is_some() {
+        let fine = Model { points: MAX_POINTS, guarded: false, gauge: 0.0, ..*model };
+        let value =
+            |element: usize| fine.sums_of_rows(element, &model.place.local_rows(&elements[element]))[0];
+        (0..elements.len()).map(value).sum::<f64>() * scale
+    } else {
+        fine_value
+    };
+    Report {
+        status: outcome.status,
+        iterations: outcome.iterations,
+        linearisations: outcome.linearisations,
+        unknowns: (0..model.blocks()).map(|block| model.dofs(block)).sum(),
+        planar: D == 2,
+        elements: elements.len(),
+        error: 0.0,
+        value: outcome.value * scale,
+        fine_value,
+        length,
+        variation,
+        bending,
+        gradient: outcome.gradient / outcome.value.max(f64::MIN_POSITIVE),
+        decrement: outcome.decrement * scale,
+    }
+}
