@@ -23,7 +23,7 @@
 #define FACES 2
 /* What minvar_curve_elements_len() says: an obstacle counts as four spans. */
 #define ROOM (ELEMENTS * (1 + 4 * FACES))
-#define WORKSPACE 170000
+#define WORKSPACE 30000
 
 static const double HEIGHT = 12.0, DEPTH = 20.0, THICKNESS = 0.5, DUCT = 6.0;
 

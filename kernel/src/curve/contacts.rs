@@ -40,8 +40,17 @@ pub(super) struct Extended<'m, 'a, const D: usize> {
 }
 
 impl<const D: usize> Extended<'_, '_, D> {
-    /// The most dofs of a node that is added, and of its element.
-    const ADDED: usize = 3 * D;
+    /// The most dofs of a node that is added (a point, its tangent and curvature), and of its element (speeds and stretches).
+    const ADDED: usize = 2 * D;
+
+    /// The most dofs of any block.
+    fn widest(&self) -> usize
+    where
+        Shape<D>: Density<D>,
+    {
+        let dofs = (0..self.model.blocks()).map(|block| self.model.dofs(block));
+        dofs.fold(Self::ADDED, usize::max)
+    }
 }
 
 impl<const D: usize> Problem for Extended<'_, '_, D>
@@ -73,12 +82,13 @@ where
     }
 
     fn max_element_dofs(&self) -> usize {
-        self.model.max_element_dofs().max(3 * Self::ADDED) + 2 * Self::ADDED
+        3 * self.widest()
     }
 
     fn envelope_bound(&self) -> usize {
         let unknowns: usize = (0..self.blocks()).map(|block| self.dofs(block)).sum();
-        let reach = 3 * self.max_element_dofs();
+        // As in a chain without obstacles: over one element and one node at most, and in a ring back to the first node.
+        let reach = if self.model.curve.closed { 4 } else { 3 } * self.widest();
         unknowns * reach.min(unknowns)
     }
 

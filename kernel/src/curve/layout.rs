@@ -40,7 +40,7 @@ impl Layout {
         Self {
             state,
             division: if divides { [model.node_count() + more, spans.max(contacts)] } else { [0; 2] },
-            trace: if options.elements_per_span > 1 && D == 2 {
+            trace: if (options.elements_per_span > 1 || options.tolerance > 0.0) && D == 2 {
                 natural::trace_len(model.curve.joints.len(), spans, model.curve.closed)
             } else {
                 0

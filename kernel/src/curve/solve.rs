@@ -288,6 +288,7 @@ where
     };
     if let Some(improved) = &improved
         && options.elements_per_span == 1
+        && options.tolerance == 0.0
         && curve.obstacles.is_empty()
         && let Some(outcome) = passes.accept(&coarse, improved, decrease, coarse_state)
     {
@@ -297,7 +298,7 @@ where
     let aim =
         Aim { tolerance: options.tolerance / place.unit, most_per_span: parts, relative_decrease: decrease };
     model.start_length = coarse.start_length;
-    if parts > 1
+    if (parts > 1 || options.tolerance > 0.0)
         && curve.obstacles.is_empty()
         && improved.is_some()
         && let Some(found) =
@@ -334,7 +335,7 @@ where
     }
     .map_err(wrong)?;
     model.natural_cost = coarse.natural_cost;
-    if parts == 1 || !curve.obstacles.is_empty() {
+    if (parts == 1 && options.tolerance == 0.0) || !curve.obstacles.is_empty() {
         let memory = [state, next_state, marks, next_marks, counts];
         return clear(&mut passes, &coarse, outcome, memory, work, elements, options).map_err(wrong);
     }
