@@ -661,6 +661,16 @@ fn a_continuation_under_tension_leads_to_the_short_curve() {
     }
 }
 
+/// An antisymmetric S has a minimum up to 112.16 degrees (`truth.rs`): beyond, at every whole degree and to either side, the
+/// curve grows without limit.
+#[test]
+fn every_s_beyond_its_last_minimum_is_unbounded() {
+    for degrees in (113..=180).flat_map(|degrees| [f64::from(degrees), -f64::from(degrees)]) {
+        let (report, _) = solve_curve(&s_curve(degrees), false, &Options::DEFAULT).expect("good data");
+        assert_eq!(report.status, Status::Unbounded, "{degrees} degrees");
+    }
+}
+
 #[test]
 fn what_grows_without_limit_is_said_to_within_few_iterations() {
     for degrees in [120.0, 150.0, 180.0] {

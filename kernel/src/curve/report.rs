@@ -89,9 +89,10 @@ where
     let outcome = Outcome { value, ..outcome };
     let figures = figures_of(model, state);
     let mut report = report(model, &outcome, elements, &figures, options);
-    let growth = model.rough_length(state) / model.start_length;
+    // Speeds alone tell little where a curve went wrong.
+    let growth = model.rough_length(state).max(figures.length) / model.start_length;
     let gave_up = matches!(report.status, Status::IterationLimit | Status::Stalled);
-    if gave_up && growth > if passes.hurries() { GROWS } else { SUSPECT_GROWTH } {
+    if gave_up && growth > if passes.hurries() { GROWS } else { LONG_GROWTH } {
         report.status = Status::Unbounded;
     }
     if report.status == Status::Converged {
@@ -126,8 +127,10 @@ const TRUSTED: f64 = 1e-4;
 pub(super) const NOTHING: f64 = 1e-9;
 /// A curve that is wrong, and grew by more than this from its start, was on its way to infinity.
 const SUSPECT_GROWTH: f64 = 10.0;
+/// The same of one that was given up.
+const LONG_GROWTH: f64 = 5.0;
 /// How much a curve must have grown that grew already when its directions alone were solved for, and ends in no minimum.
-const GROWS: f64 = 3.0;
+const GROWS: f64 = 2.0;
 /// No curve with a minimum grows by more than this.
 const GREAT_GROWTH: f64 = 50.0;
 
