@@ -116,11 +116,10 @@ where
             return Ok(Divided { outcome, error });
         }
         next.mark(closed);
+        let nodes = next.nodes(closed);
         let found = {
             let coarse = current.model(of);
             let Level { counts, marks, state } = &mut *next;
-            let elements: usize = counts.iter().map(|&count| count as usize).sum();
-            let nodes = elements + usize::from(!closed);
             let mut fine = Model { division: Division::Marked(&marks[..nodes]), ..*of };
             let state = &mut state[..fine.state_len()];
             let (mut span, mut left) = (0, current.counts.first().map_or(0, |&count| count as usize));

@@ -8,7 +8,6 @@
 use super::end::{End, rows_between};
 use super::fairness::{Density, Shape};
 use super::model::{Contact, Model};
-use super::obstacle::Side;
 use super::passes::{Passes, weights_of_sums};
 use super::rows::place;
 use super::start::{cut, refine};
@@ -227,7 +226,7 @@ impl<const D: usize> Foot<D> {
     }
 }
 
-/// The worst violation: how much too near, the contact's code and the foot.
+/// The worst violation, if there is any: how much too near, the contact's code, the foot and the place.
 fn worst<const D: usize>(
     model: &Model<'_, D>,
     state: &[f64],
@@ -236,18 +235,19 @@ fn worst<const D: usize>(
 where
     Shape<D>: Density<D>,
 {
+    let least = TOUCHES * model.rough_length(state);
     let mut worst: Option<(f64, usize, Foot<D>, SVector<f64, D>)> = None;
     for (index, obstacle) in model.curve.obstacles.iter().enumerate() {
         let [from, to] = [&obstacle.from, &obstacle.to].map(|point| model.place.local_point(point));
         let clearance = model.place.local_length(obstacle.clearance);
-        let sign = if obstacle.side == Side::LEFT { 1.0 } else { -1.0 };
+        let sign = obstacle.side.sign();
         let lack = |share: f64| {
             let point = from + (to - from) * share;
             Foot::of(model, state, &point).map(|foot| (clearance - sign * foot.left, foot, point))
         };
         let mut note = |which: usize, found: Option<(f64, Foot<D>, SVector<f64, D>)>| {
             if let Some((lack, foot, point)) = found
-                && worst.as_ref().is_none_or(|(most, ..)| lack > *most)
+                && lack > worst.as_ref().map_or(least, |(most, ..)| *most)
             {
                 worst = Some((lack, 3 * index + which, foot, point));
             }
@@ -321,15 +321,10 @@ where
             let model = of.touching(&touching.marks[..nodes], touching.contacts);
             let first = weights_of_sums(&model, touching.state);
             for node in 0..nodes {
-                let mark = touching.marks[node];
-                if mark >= 0.0 {
-                    continue;
-                }
-                let code = touching.contacts[(-mark) as usize - 1] as usize;
-                let side = model.curve.obstacles[code / 3].side;
+                let Some(code) = model.contact_code(node) else { continue };
                 // Away from an obstacle on the left is to the right.
                 let sinks =
-                    pull(&model, node, first, touching.state) * if side == Side::LEFT { -1.0 } else { 1.0 };
+                    pull(&model, node, first, touching.state) * -model.curve.obstacles[code / 3].side.sign();
                 if sinks > 0.0 && strongest.is_none_or(|(most, _)| sinks > most) {
                     strongest = Some((sinks, node));
                 }
@@ -342,13 +337,8 @@ where
         if !changed {
             let found = {
                 let model = of.touching(&touching.marks[..nodes], touching.contacts);
-                let size = model.rough_length(touching.state);
-                let marks = &touching.marks[..nodes];
-                let contacts = &*touching.contacts;
-                worst(&model, touching.state, |code| {
-                    marks.iter().any(|&mark| mark < 0.0 && contacts[(-mark) as usize - 1] as usize == code)
-                })
-                .filter(|(lack, ..)| *lack > TOUCHES * size)
+                let taken = |code: usize| (0..nodes).any(|node| model.contact_code(node) == Some(code));
+                worst(&model, touching.state, taken)
             };
             let Some((_, code, foot, point)) = found else { return Ok(outcome) };
             if touching.used == touching.contacts.len() || nodes == touching.marks.len() {
@@ -401,9 +391,8 @@ fn insert<const D: usize>(
             middle.frame[D - 1][0] = -forward[1];
             middle.frame[D - 1][1] = forward[0];
             let obstacle = &new.curve.obstacles[contacts[*used - 1] as usize / 3];
-            let sign = if obstacle.side == Side::LEFT { 1.0 } else { -1.0 };
             let clearance = new.place.local_length(obstacle.clearance);
-            middle.point = point - middle.frame[D - 1] * (sign * clearance);
+            middle.point = point - middle.frame[D - 1] * (obstacle.side.sign() * clearance);
         }
         None => {}
     }

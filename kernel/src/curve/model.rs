@@ -10,7 +10,6 @@ use super::fairness::{Density, Shape};
 use super::functional::{Functional, Weights};
 use super::guard::Guard;
 use super::joint::{Continuity, Curve, Given, Joint};
-use super::obstacle::Side;
 use super::placement::Placement;
 use super::rows::{Integrand, Mirrored, RowDerivatives};
 use super::space::Space;
@@ -183,17 +182,19 @@ impl<const D: usize> Model<'_, D> {
         self.joint_number(node).map_or(0.0, |joint| (joint + 1) as f64)
     }
 
+    /// The code of the contact at a node, if there is one, see [`Model::contacts`].
+    pub(super) fn contact_code(&self, node: usize) -> Option<usize> {
+        let Division::Marked(nodes) = self.division else { return None };
+        let number = Some(-*nodes.get(node)?).filter(|number| *number > 0.0)?;
+        self.contacts.get(number as usize - 1).map(|&code| code as usize)
+    }
+
     /// The contact at a node, if there is one.
     pub(super) fn contact(&self, node: usize) -> Option<Contact<D>> {
-        let Division::Marked(nodes) = self.division else { return None };
-        let mark = *nodes.get(node)?;
-        if mark >= 0.0 {
-            return None;
-        }
-        let code = *self.contacts.get((-mark) as usize - 1)? as usize;
+        let code = self.contact_code(node)?;
         let obstacle = self.curve.obstacles.get(code / 3)?;
         let [from, to] = [&obstacle.from, &obstacle.to].map(|point| self.place.local_point(point));
-        let left = if obstacle.side == Side::LEFT { 1.0 } else { -1.0 };
+        let left = obstacle.side.sign();
         Some(match code % 3 {
             0 => Contact::Around { point: from, left: left * self.place.local_length(obstacle.clearance) },
             1 => Contact::Around { point: to, left: left * self.place.local_length(obstacle.clearance) },

@@ -120,16 +120,9 @@ where
     for index in 0..model.element_count() {
         let span = chain.span(index);
         let mut ends = [model.end(index, 0, state), model.end(index, 1, state)];
-        let chord = (ends[1].point - ends[0].point) / span.chord;
+        let along = (ends[1].point - ends[0].point) / span.chord;
         for (end, this) in ends.iter_mut().enumerate() {
-            if chain.turns(index, end) {
-                let (sin, cos) = (libm::sin(span.shared[2 * end]), libm::cos(span.shared[2 * end]));
-                this.frame[0][0] = cos * chord[0] - sin * chord[1];
-                this.frame[0][1] = sin * chord[0] + cos * chord[1];
-                this.frame[1][0] = -this.frame[0][1];
-                this.frame[1][1] = this.frame[0][0];
-            }
-            this.curvature[0] = span.shared[2 * end + 1];
+            *this = chain.joint_end(index, end, &span, &along, this);
         }
         if !wish.warm {
             super::start::give_speeds(&mut ends, span.length(), span.turning(&COARSE));

@@ -11,6 +11,11 @@ impl Side {
     pub const LEFT: Self = Self(0);
     /// The obstacle lies to the right of the curve.
     pub const RIGHT: Self = Self(1);
+
+    /// 1 to the left, −1 to the right.
+    pub(super) fn sign(self) -> f64 {
+        if self == Self::LEFT { 1.0 } else { -1.0 }
+    }
 }
 
 /// A point or a segment that a planar curve must leave on one side, at a distance.

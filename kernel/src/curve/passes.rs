@@ -2,7 +2,7 @@
 
 use super::fairness::{Density, Shape};
 use super::model::{Goal, Model};
-use super::natural::{self, Improved, Wish};
+use super::natural::{self, Improved, TrueCurve, Wish};
 use super::space::Space;
 use super::torsion::SpaceFunctional;
 use crate::basis::quadrature::MAX_POINTS;
@@ -18,7 +18,8 @@ const NEAR: f64 = 0.3;
 const FITTED: f64 = 1e-6;
 /// How many iterations a curve gets that grows already when its directions alone are solved for.
 const MOST_GROWING: usize = 60;
-/// An estimate of what is left to gain is trusted to this factor: in eight thousand random problems it was never wrong by more.
+/// An estimate of what is left to gain is trusted to this factor (`curve_properties.rs` looks for data where it is wrong by
+/// more).
 const SURE: f64 = 3.0;
 /// Steps of each element by itself between two of the whole curve.
 const RELAXATION: usize = 10;
@@ -62,12 +63,12 @@ pub(super) struct Passes<'a> {
     /// The length that is asked for, in the local unit.
     length: Option<f64>,
     /// The tension that belongs to that length, as far as it is known.
-    pub(super) multiplier: f64,
+    multiplier: f64,
     /// Whether the observer asked to stop.
     cancelled: bool,
     hurries: bool,
     /// Whether elements that have been laid along a known curve are taken as they are as far as possible.
-    pub(super) hastens: bool,
+    hastens: bool,
 }
 
 impl<'a> Passes<'a> {
@@ -95,7 +96,7 @@ impl<'a> Passes<'a> {
 
     /// Notes an iteration of the curve's directions: the functional, in the local unit, and how far it went. Returns whether
     /// to go on.
-    pub(super) fn note(&mut self, value: f64, step: f64) -> bool {
+    fn note(&mut self, value: f64, step: f64) -> bool {
         if self.iterations >= self.most {
             return false;
         }
@@ -133,7 +134,7 @@ impl<'a> Passes<'a> {
         let varies = model.space.is_some_and(|space| space.functional == SpaceFunctional::Mvc);
         set_softness(model, varies || gentle);
         model.begin_ties(state);
-        let start_cost = guard(model, state);
+        let [start_cost, _] = guard(model, state);
         let natural = if start_cost > 0.0 { model.natural_cost.min(start_cost) } else { model.natural_cost };
         model.gauge = natural / model.element_count() as f64;
         let outcome = self.minimise(model, SHAPING_DECREASE, [0, 0], 1.0, state, work)?;
@@ -165,8 +166,8 @@ impl<'a> Passes<'a> {
         model.points = WORKING_POINTS;
         let outcome = self.finish_with(model, relative_decrease.max(WORKING_DECREASE), state, work)?;
         model.points = MAX_POINTS;
-        guard(model, state);
-        let value = value_of(model, state);
+        let sums = guard(model, state);
+        let value = model.couple(sums).value;
         let agrees =
             (value - outcome.value).abs() <= relative_decrease * (value + 1e-9 * model.natural_cost());
         let stopped = matches!(outcome.status, Status::Cancelled | Status::Unbounded);
@@ -255,9 +256,9 @@ impl<'a> Passes<'a> {
         let mut stage = usize::from(self.multiplier != 0.0);
         let mut last: Option<[f64; 2]> = None;
         let mut stubborn = false;
+        let mut sums = total(model, state);
         loop {
-            let [value, _] = total(model, state);
-            let unit = (value + 1e-3 * model.natural_cost) / (target * target);
+            let unit = (sums[0] + 1e-3 * model.natural_cost) / (target * target);
             let penalty = unit * if stubborn { STIFF_PENALTY } else { PENALTIES[stage] };
             model.goal = Some(Goal { target, multiplier: self.multiplier, penalty });
             let is_last = stage + 1 == PENALTIES.len();
@@ -273,7 +274,8 @@ impl<'a> Passes<'a> {
             if stubborn && outcome.status == Status::IterationLimit && self.iterations < most {
                 outcome.status = Status::Converged;
             }
-            let length = total(model, state)[1];
+            sums = total(model, state);
+            let length = sums[1];
             let off = length - target;
             corrections += 1;
             let stopped = !matches!(outcome.status, Status::Converged | Status::Stalled);
@@ -292,14 +294,14 @@ impl<'a> Passes<'a> {
             last = Some([tension, length]);
             if stopped || (is_last && (met || corrections >= MOST_CORRECTIONS)) {
                 let status = if stopped || met { outcome.status } else { Status::Stalled };
-                return Ok(Outcome { value: value_of(model, state), status, ..outcome });
+                return Ok(Outcome { value: model.couple(sums).value, status, ..outcome });
             }
             stage = (stage + 1).min(PENALTIES.len() - 1);
         }
     }
 
-    /// Lays the elements along the curve's direction as a function of arc length, where that can be; a span may be `bent` another
-    /// way than the nearest, and the elements may be those of the last solution (`warm`).
+    /// Lays the elements along the curve's direction as a function of arc length, where that can be; a span may be `bent`
+    /// another way than the nearest, and the elements may be those of the last solution (`warm`).
     pub(super) fn lay<const D: usize>(
         &mut self,
         model: &mut Model<'_, D>,
@@ -324,6 +326,22 @@ impl<'a> Passes<'a> {
             self.hurry(MOST_GROWING);
         }
         Some(improved)
+    }
+
+    /// Finds the true curve from elements that were laid along it, see [`natural::trace`].
+    pub(super) fn trace<'w, const D: usize>(
+        &mut self,
+        model: &Model<'_, D>,
+        bent: Option<usize>,
+        state: &[f64],
+        memory: &'w mut [f64],
+    ) -> Option<TrueCurve<'w>>
+    where
+        Shape<D>: Density<D>,
+    {
+        natural::trace(model, self.length, state, bent, memory, &mut |sums, step| {
+            self.note(model.value_of(sums), step)
+        })
     }
 
     /// Takes elements that run along a known curve as they are, if what they exceed the least integral by is no more than is
@@ -451,18 +469,18 @@ where
 }
 
 /// Lets the start be outside the guarded domain if it is: then a cusp is refused at the end, not on the way. Returns the
-/// start's cost.
-fn guard<const D: usize>(model: &mut Model<'_, D>, state: &[f64]) -> f64
+/// start's sums, see [`total`].
+fn guard<const D: usize>(model: &mut Model<'_, D>, state: &[f64]) -> [f64; 2]
 where
     Shape<D>: Density<D>,
 {
     model.guarded = true;
-    let [cost, _] = total(model, state);
-    if cost.is_finite() {
-        return cost;
+    let sums = total(model, state);
+    if sums[0].is_finite() {
+        return sums;
     }
     model.guarded = false;
-    total(model, state)[0]
+    total(model, state)
 }
 
 impl Observer for Passes<'_> {

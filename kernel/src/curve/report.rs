@@ -80,13 +80,15 @@ where
     for (index, element) in elements.iter_mut().enumerate() {
         *element = world_element(model, index, state);
     }
-    let outcome =
-        Outcome { iterations: passes.iterations, linearisations: passes.linearisations, ..*outcome };
     let mut model = *model;
     passes::soften_where_straight(&mut model, state);
     let model = &model;
-    let value = if model.space.is_some() { passes::value_of(model, state) } else { outcome.value };
-    let outcome = Outcome { value, ..outcome };
+    let outcome = Outcome {
+        iterations: passes.iterations,
+        linearisations: passes.linearisations,
+        value: if model.space.is_some() { passes::value_of(model, state) } else { outcome.value },
+        ..*outcome
+    };
     let figures = figures_of(model, state);
     let mut report = report(model, &outcome, elements, &figures, options);
     // Speeds alone tell little where a curve went wrong.

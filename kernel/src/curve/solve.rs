@@ -10,7 +10,6 @@ use super::functional::{Functional, Weights};
 use super::joint::Curve;
 use super::layout::Layout;
 use super::model::{Division, Model};
-use super::natural;
 use super::options::Options;
 use super::passes::{self, Passes};
 use super::placement::{Place, Placement};
@@ -34,16 +33,14 @@ pub const fn elements_len(curve: &Curve<'_>, options: &Options) -> usize {
 /// Everything that [`solve()`] would find wrong with the data and options, but for
 /// [`CurveError::CurvatureNeedsTangent`], which shows with the start values.
 pub fn workspace_len(curve: &Curve<'_>, options: &Options) -> Result<usize, CurveError> {
-    let unit = look_over(curve, options)?;
-    Ok(match Place::of(curve, unit, options.dimension)? {
+    Ok(match look_over(curve, options)? {
         Place::Plane(place) => Layout::of(&model(curve, options, &place), options).len(),
-        Place::Space(_) if !curve.obstacles.is_empty() => return Err(CurveError::ObstaclesNotPossible),
         Place::Space(place) => Layout::of(&model(curve, options, &place), options).len(),
     })
 }
 
-/// Everything that can be wrong with the data and options but for memory. Returns the unit of length.
-fn look_over(curve: &Curve<'_>, options: &Options) -> Result<f64, CurveError> {
+/// Everything that can be wrong with the data and options but for memory. Returns where the curve lies.
+fn look_over(curve: &Curve<'_>, options: &Options) -> Result<Place, CurveError> {
     options.check()?;
     let unit = check(curve)?;
     check_length(curve, options.length)?;
@@ -59,14 +56,17 @@ fn look_over(curve: &Curve<'_>, options: &Options) -> Result<f64, CurveError> {
         }
         check_elements(reference.elements)?;
     }
-    Ok(unit)
+    match Place::of(curve, unit, options.dimension)? {
+        Place::Space(_) if !curve.obstacles.is_empty() => Err(CurveError::ObstaclesNotPossible),
+        place => Ok(place),
+    }
 }
 
 /// Computes a curve (thesis chapter 4).
 ///
 /// `workspace` needs [`workspace_len`] numbers in any condition, `elements` receives [`elements_len`] elements in
-/// order along the curve, or fewer with a tolerance; more room is left untouched. `records` receives one record an iteration as far as it
-/// reaches. Fixed positions and tangent directions are kept exactly; planar data give elements exactly in their
+/// order along the curve, or fewer with a tolerance; more room is left untouched. `records` receives one record an iteration
+/// as far as it reaches. Fixed positions and tangent directions are kept exactly; planar data give elements exactly in their
 /// plane where that is parallel to a coordinate plane, else to rounding.
 ///
 /// With a reference shape the search starts from that shape.
@@ -155,13 +155,12 @@ pub(super) fn begin(
     observer: &mut dyn Observer,
     from: Begin,
 ) -> Result<Report, CurveError> {
-    let unit = look_over(curve, options)?;
+    let found = look_over(curve, options)?;
     if from == Begin::Elements && !curve.obstacles.is_empty() {
         return Err(CurveError::ObstaclesNotPossible);
     }
-    match Place::of(curve, unit, options.dimension)? {
+    match found {
         Place::Plane(place) => run(curve, options, &place, workspace, elements, records, observer, from),
-        Place::Space(_) if !curve.obstacles.is_empty() => Err(CurveError::ObstaclesNotPossible),
         Place::Space(place) => run(curve, options, &place, workspace, elements, records, observer, from),
     }
 }
@@ -234,26 +233,11 @@ where
     let decrease = options.relative_decrease;
 
     let (begin, warm) = (from, from == Begin::Elements);
-    let from = if warm { Some(&*elements) } else { curve.reference.map(|reference| reference.elements) };
-    if let Some(from) = from {
-        check_elements(from)?;
-        model.natural_cost = adopt(&model, place, from, state);
-        model.start_length = model.rough_length(state);
-        take_scale(&mut model, state);
-        if warm
-            && let Some(improved) = passes.lay(&mut model, None, true, decrease, state, work)
-            && let Some(outcome) = passes.accept(&model, &improved, decrease, state)
-        {
-            return Ok(hand_over(&model, &outcome, &passes, state, elements, options));
-        }
-        if let Some(reference) = &curve.reference {
-            model.gauge = reference.weight * model.natural_cost / count as f64;
-        }
-        let mut outcome = passes.finish(&mut model, decrease, state, work).map_err(wrong)?;
-        if model.gauge > 0.0 {
-            model.gauge = 0.0;
-            outcome.value = (0..count).map(|element| model.cost(element, state)).sum();
-        }
+    let shape = if warm { Some(&*elements) } else { curve.reference.map(|reference| reference.elements) };
+    if let Some(shape) = shape {
+        check_elements(shape)?;
+        let outcome =
+            from_shape(&mut passes, &mut model, place, shape, warm, decrease, state, work).map_err(wrong)?;
         return Ok(hand_over(&model, &outcome, &passes, state, elements, options));
     }
 
@@ -266,20 +250,7 @@ where
     model.space = coarse.space;
     coarse.start_length = coarse.rough_length(coarse_state);
     if options.continuation > 0 {
-        // Under tension first, which has a minimum whatever the data (thesis 4.10).
-        let own = coarse.weights.length;
-        let mut pull = STRONG_PULL * coarse.natural_cost / coarse.rough_length(coarse_state);
-        for _ in 0..options.continuation {
-            coarse.weights.length = own + pull;
-            let outcome = passes
-                .shape_and_finish(&mut coarse, CONTINUATION_DECREASE, coarse_state, work)
-                .map_err(wrong)?;
-            if matches!(outcome.status, Status::Cancelled | Status::IterationLimit) {
-                break;
-            }
-            pull *= 0.1;
-        }
-        coarse.weights.length = own;
+        under_tension(&mut passes, &mut coarse, options.continuation, coarse_state, work).map_err(wrong)?;
     }
     let improved = if options.continuation > 0 {
         None
@@ -301,10 +272,7 @@ where
     if (parts > 1 || options.tolerance > 0.0)
         && curve.obstacles.is_empty()
         && improved.is_some()
-        && let Some(found) =
-            natural::trace(&coarse, length, coarse_state, begin.bent(curve), traced, &mut |sums, step| {
-                passes.note(coarse.value_of(sums), step)
-            })
+        && let Some(found) = passes.trace(&coarse, begin.bent(curve), coarse_state, traced)
     {
         if options.tolerance == 0.0 {
             // The elements' minimum is next to the true one.
@@ -387,8 +355,70 @@ where
     Ok(hand_over(&model, &outcome, &passes, state, elements, options))
 }
 
-/// Keeps a solution with one element a span clear of its obstacles, if there are any, divides it and hands it over. `memory` is state, next state, marks, next
-/// marks and contacts.
+/// Minimises from a shape: the last solution (`warm`), or a reference.
+#[expect(clippy::too_many_arguments, reason = "a curve, where it lies, where it starts, and memory")]
+fn from_shape<const D: usize>(
+    passes: &mut Passes<'_>,
+    model: &mut Model<'_, D>,
+    place: &Placement<D>,
+    shape: &[Element],
+    warm: bool,
+    relative_decrease: f64,
+    state: &mut [f64],
+    work: &mut [f64],
+) -> Result<Outcome, WorkspaceTooSmall>
+where
+    Shape<D>: Density<D>,
+{
+    model.natural_cost = adopt(model, place, shape, state);
+    model.start_length = model.rough_length(state);
+    take_scale(model, state);
+    if warm
+        && let Some(improved) = passes.lay(model, None, true, relative_decrease, state, work)
+        && let Some(outcome) = passes.accept(model, &improved, relative_decrease, state)
+    {
+        return Ok(outcome);
+    }
+    let count = model.element_count();
+    if let Some(reference) = &model.curve.reference {
+        model.gauge = reference.weight * model.natural_cost / count as f64;
+    }
+    let mut outcome = passes.finish(model, relative_decrease, state, work)?;
+    if model.gauge > 0.0 {
+        model.gauge = 0.0;
+        outcome.value = (0..count).map(|element| model.cost(element, state)).sum();
+    }
+    Ok(outcome)
+}
+
+/// Minimises under a strong tension first, which has a minimum whatever the data, and under less and less in so many stages
+/// (thesis 4.10).
+fn under_tension<const D: usize>(
+    passes: &mut Passes<'_>,
+    model: &mut Model<'_, D>,
+    stages: u32,
+    state: &mut [f64],
+    work: &mut [f64],
+) -> Result<(), WorkspaceTooSmall>
+where
+    Shape<D>: Density<D>,
+{
+    let own = model.weights.length;
+    let mut pull = STRONG_PULL * model.natural_cost / model.start_length;
+    for _ in 0..stages {
+        model.weights.length = own + pull;
+        let outcome = passes.shape_and_finish(model, CONTINUATION_DECREASE, state, work)?;
+        if matches!(outcome.status, Status::Cancelled | Status::IterationLimit) {
+            break;
+        }
+        pull *= 0.1;
+    }
+    model.weights.length = own;
+    Ok(())
+}
+
+/// Keeps a solution with one element a span clear of its obstacles, if there are any, divides it and hands it over. `memory`
+/// is state, next state, marks, next marks and contacts.
 fn clear<const D: usize>(
     passes: &mut Passes<'_>,
     model: &Model<'_, D>,

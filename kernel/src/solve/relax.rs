@@ -44,8 +44,8 @@ fn totals<P: Problem + ?Sized>(problem: &P, state: &[f64]) -> [f64; 2] {
     totals
 }
 
-/// Relaxes every element of a state, with this objective, from each of its starts, and keeps the best for each in `work.best`. Returns how
-/// often an element was linearised.
+/// Relaxes every element of a state, with this objective, from each of its starts, and keeps the best for each in
+/// `work.best`. Returns how often an element was linearised.
 pub(super) fn explore<P: Problem + ?Sized>(
     problem: &P,
     work: &mut Workspace<'_>,

@@ -2,7 +2,7 @@
 
 use super::WITHIN;
 use super::task::Task;
-use minvar::curve::{Curve, Element, Options, Report, elements_len, solve, workspace_len};
+use minvar::curve::{Curve, Element, Joint, Options, Report, elements_len, solve, update, workspace_len};
 use minvar::solve::{Silent, Status};
 use std::hint::black_box;
 use std::time::Instant;
@@ -36,6 +36,17 @@ impl<'a> Solver<'a> {
     pub fn solve(&mut self) -> Report {
         let curve = black_box(&self.curve);
         solve(curve, &self.options, &mut self.workspace, &mut self.elements, &mut [], &mut Silent)
+            .expect("the data are good")
+    }
+
+    /// Solves other joints of the same kinds from the last solution.
+    ///
+    /// # Panics
+    ///
+    /// If minvar refuses the data.
+    pub fn update(&mut self, joints: &[Joint]) -> Report {
+        let curve = Curve::new(black_box(joints), self.curve.closed);
+        update(&curve, &self.options, &mut self.workspace, &mut self.elements, &mut [], &mut Silent)
             .expect("the data are good")
     }
 

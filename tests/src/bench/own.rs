@@ -3,12 +3,14 @@
 #![allow(clippy::disallowed_methods, reason = "the tests may use the platform's functions")]
 
 use super::WITHIN;
+use super::ours::Solver;
+use super::rounds::median;
 use super::task::Task;
 use crate::appendix::figure;
 use crate::ceres;
 use crate::compare::{SETS, kernel_joints};
-use minvar::curve::{Curve, Element, Functional, Joint, Options, elements_len, solve, update, workspace_len};
-use minvar::solve::{Silent, Status};
+use minvar::curve::{Functional, Joint, Options};
+use minvar::solve::Status;
 use serde::Serialize;
 use std::fs::OpenOptions;
 use std::io::Write;
@@ -66,13 +68,20 @@ pub fn run(to: &Path) -> Result<(), String> {
         "\nA wave of so many joints, to {WITHIN:e}.\n| joints | µs a joint | beside that of 100 |\n| --- | --- | --- |"
     );
     for closed in [false, true] {
-        let chains: Vec<Line> = LENGTHS.iter().map(|&joints| chain(joints, closed)).collect();
-        let unit = chains[1].us_an_element;
-        for mut line in chains {
-            line.peer_us = unit;
-            line.ratio = line.us_an_element / unit;
-            println!("| {} | {:.2} | {:.2} |", line.case, line.us_an_element, line.ratio);
-            lines.push(line);
+        let tasks = LENGTHS.map(|joints| wave(joints, closed));
+        let found = tasks.each_ref().map(chain);
+        let unit = found[1].us_a_joint;
+        for (task, Chain { us_a_joint, linearisations_a_joint }) in tasks.iter().zip(found) {
+            println!("| {} | {us_a_joint:.2} | {:.2} |", task.name, us_a_joint / unit);
+            lines.push(Line {
+                case: task.name.clone(),
+                peer: "a joint of 100",
+                minvar_us: us_a_joint,
+                peer_us: unit,
+                ratio: unit / us_a_joint,
+                us_an_element: us_a_joint,
+                linearisations_an_element: linearisations_a_joint,
+            });
         }
     }
     let failed = |error: std::io::Error| format!("{}: {error}", to.display());
@@ -84,46 +93,37 @@ pub fn run(to: &Path) -> Result<(), String> {
     Ok(())
 }
 
-fn median(mut of: Vec<f64>) -> f64 {
-    of.sort_by(f64::total_cmp);
-    of[of.len() / 2]
-}
-
 fn micros(work: impl FnOnce()) -> f64 {
     let start = Instant::now();
     work();
     1e6 * start.elapsed().as_secs_f64()
 }
 
+fn options(task: &Task) -> Options {
+    Options { relative_decrease: WITHIN, ..task.default_options() }
+}
+
 /// `None` where a solve from the data does not converge.
 fn warm(task: &Task) -> Option<Line> {
-    let options = Options { functional: task.functional, relative_decrease: WITHIN, ..Options::DEFAULT };
     let mut dragged = task.joints.clone();
     let middle = &mut dragged[task.joints.len() / 2].position.value;
     // The task's unit is near the mean distance.
     (middle[0], middle[1]) = (middle[0] + DRAG, middle[1] - 0.7 * DRAG);
-    let curves = [Curve::new(&task.joints, task.closed), Curve::new(&dragged, task.closed)];
-    let len = curves.iter().map(|curve| workspace_len(curve, &options).expect("good data")).max()?;
-    let (mut workspace, mut elements) =
-        (vec![0.0; len], vec![Element::ZERO; elements_len(&curves[0], &options)]);
+    let mut solver = Solver::new(task, &options(task));
+    if solver.solve().status != Status::Converged {
+        return None;
+    }
     let mut linearisations = 0;
     let (mut updates, mut solves) = (Vec::new(), Vec::new());
     for _ in 0..REPEATS {
         solves.push(micros(|| {
-            let report = solve(&curves[0], &options, &mut workspace, &mut elements, &mut [], &mut Silent);
-            linearisations = usize::from(report.expect("good data").status != Status::Converged);
+            solver.solve();
         }));
-        if linearisations > 0 {
-            return None;
-        }
-        for curve in [&curves[1], &curves[0]] {
-            updates.push(micros(|| {
-                let report = update(curve, &options, &mut workspace, &mut elements, &mut [], &mut Silent);
-                linearisations = report.expect("good data").linearisations;
-            }));
+        for joints in [&dragged, &task.joints] {
+            updates.push(micros(|| linearisations = solver.update(joints).linearisations));
         }
     }
-    let (minvar_us, peer_us, count) = (median(updates), median(solves), elements.len() as f64);
+    let (minvar_us, peer_us, count) = (median(updates), median(solves), task.spans() as f64);
     Some(Line {
         case: task.name.clone(),
         peer: "minvar from the data",
@@ -135,38 +135,35 @@ fn warm(task: &Task) -> Option<Line> {
     })
 }
 
-fn chain(count: usize, closed: bool) -> Line {
+/// What a long chain costs.
+struct Chain {
+    us_a_joint: f64,
+    linearisations_a_joint: f64,
+}
+
+fn wave(count: usize, closed: bool) -> Task {
     let joints: Vec<Joint> = (0..count)
         .map(|i| {
             let (along, aside) = (i as f64, WAVE[i % WAVE.len()]);
             if !closed {
                 return Joint::at([along, aside, 0.0]);
             }
-            let (angle, radius) =
-                (std::f64::consts::TAU * along / count as f64, count as f64 / std::f64::consts::TAU);
+            let tau = std::f64::consts::TAU;
+            let (angle, radius) = (tau * along / count as f64, count as f64 / tau);
             let out = radius - aside * (1.0f64).min(0.05 * radius);
             Joint::at([out * angle.cos(), out * angle.sin(), 0.0])
         })
         .collect();
-    let curve = Curve::new(&joints, closed);
-    let options = Options { relative_decrease: WITHIN, ..Options::DEFAULT };
-    let mut workspace = vec![0.0; workspace_len(&curve, &options).expect("good data")];
-    let mut elements = vec![Element::ZERO; elements_len(&curve, &options)];
+    let name = format!("{count} joints, {}", if closed { "closed" } else { "open" });
+    Task::in_unit(1.0, name, joints, closed, Functional::MVC)
+}
+
+fn chain(task: &Task) -> Chain {
+    let count = task.joints.len();
+    let mut solver = Solver::new(task, &options(task));
     let mut linearisations = 0;
-    let times = (0..(100_000 / count).clamp(3, REPEATS)).map(|_| {
-        micros(|| {
-            let report = solve(&curve, &options, &mut workspace, &mut elements, &mut [], &mut Silent);
-            linearisations = report.expect("good data").linearisations;
-        })
-    });
-    let minvar_us = median(times.collect());
-    Line {
-        case: format!("{count} joints, {}", if closed { "closed" } else { "open" }),
-        peer: "100 joints",
-        minvar_us,
-        peer_us: 0.0,
-        ratio: 0.0,
-        us_an_element: minvar_us / count as f64,
-        linearisations_an_element: linearisations as f64 / count as f64,
-    }
+    let times = (0..(100_000 / count).clamp(3, REPEATS))
+        .map(|_| micros(|| linearisations = solver.solve().linearisations));
+    let us_a_joint = median(times.collect()) / count as f64;
+    Chain { us_a_joint, linearisations_a_joint: linearisations as f64 / count as f64 }
 }

@@ -61,7 +61,8 @@ pub fn race(
         .collect())
 }
 
-fn median(mut of: Vec<f64>) -> f64 {
+/// The median.
+pub(super) fn median(mut of: Vec<f64>) -> f64 {
     of.sort_by(f64::total_cmp);
     let middle = of.len() / 2;
     if of.len() % 2 == 1 { of[middle] } else { 0.5 * (of[middle - 1] + of[middle]) }

@@ -21,6 +21,7 @@ mod space;
 mod tests;
 
 pub(crate) use evenness::{add_evenness, evenness, quickening};
+pub(crate) use plane::{curvature_with_derivatives, slope_with_derivatives};
 
 use super::functional::Weights;
 use crate::basis::lanes::Lanes;

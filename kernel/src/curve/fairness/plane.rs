@@ -25,6 +25,46 @@ fn scalars(d: &[[Lanes; 2]; 3]) -> Scalars {
     Scalars { p, q, u, v, n: p * v - q * u * 3.0 }
 }
 
+/// The derivatives of `N` by `d1, d2, d3`.
+#[inline(always)]
+fn slopes_of_n(d: &[[Lanes; 2]; 3], s: &Scalars) -> [[Lanes; 2]; 3] {
+    let [[a, b], [c, dd], [e, f]] = *d;
+    let (u3, q3, v2) = (s.u * 3.0, s.q * 3.0, s.v * 2.0);
+    [
+        [a * v2 + s.p * f - c * u3 - q3 * dd, b * v2 - s.p * e - dd * u3 + q3 * c],
+        [q3 * b - a * u3, -(b * u3) - q3 * a],
+        [-(s.p * b), s.p * a],
+    ]
+}
+
+/// `db/ds` with its derivatives by `d1, d2, d3`.
+#[inline(always)]
+pub(crate) fn slope_with_derivatives(d: &[[Lanes; 2]; 3]) -> (Lanes, [[Lanes; 2]; 3]) {
+    let s = scalars(d);
+    let inverse = Lanes::ONE / s.p;
+    let cube = inverse * inverse * inverse;
+    let value = s.n * cube;
+    let down = value * inverse * 6.0;
+    let mut by = slopes_of_n(d, &s).map(|row| row.map(|x| x * cube));
+    for x in 0..2 {
+        by[0][x] = by[0][x] - d[0][x] * down;
+    }
+    (value, by)
+}
+
+/// `b` with its derivatives by `d1, d2, d3`.
+#[inline(always)]
+pub(crate) fn curvature_with_derivatives(d: &[[Lanes; 2]; 3]) -> (Lanes, [[Lanes; 2]; 3]) {
+    let [[a, b], [c, dd], _] = *d;
+    let s = scalars(d);
+    let inverse = Lanes::ONE / s.p;
+    let third = inverse * (s.p.sqrt() * inverse);
+    let value = s.u * third;
+    let down = value * inverse * 3.0;
+    let by = [[dd * third - a * down, -(c * third) - b * down], [-(b * third), a * third], [Lanes::ZERO; 2]];
+    (value, by)
+}
+
 impl Density<2> for Shape<2> {
     #[inline(always)]
     fn slope(d: &[[Lanes; 2]; 3]) -> Normal {
@@ -55,7 +95,8 @@ impl Density<2> for Shape<2> {
     #[inline(always)]
     fn derivatives(weights: &Weighted, target: &Normal, d: &[[Lanes; 2]; 3]) -> Local<2> {
         let [[a, b], [c, dd], [e, f]] = *d;
-        let Scalars { p, q, u, v, n } = scalars(d);
+        let s = scalars(d);
+        let Scalars { p, q, u, v, n } = s;
         let powers = Powers::of(p);
         let rho = target[0];
         let mut local = Local::ZERO;
@@ -78,10 +119,8 @@ impl Density<2> for Shape<2> {
         let mut by_p = n * (first * (-5.5) + second * 5.0) * ip * w + rest * powers.inverse_speed * 0.5;
         let mut by_pp = (n * (first * 35.75 - second * 17.5) * w - rest * powers.speed * 0.25) * (ip * ip);
 
-        let (u3, q3, v2, a2, b2) = (u * 3.0, q * 3.0, v * 2.0, a * 2.0, b * 2.0);
-        let n1 = [a * v2 + p * f - c * u3 - q3 * dd, b * v2 - p * e - dd * u3 + q3 * c];
-        let n2 = [q3 * b - a * u3, -(b * u3) - q3 * a];
-        let n3 = [-(p * b), p * a];
+        let (v2, a2, b2) = (v * 2.0, a * 2.0, b * 2.0);
+        let [n1, n2, n3] = slopes_of_n(d, &s);
         let p1 = [a2, b2];
 
         let mut g =

@@ -2,6 +2,7 @@
 
 use super::functions::Tables;
 use super::span::{COLUMNS, Condensed, Span, Weigh, condense};
+use crate::curve::end::End;
 use crate::curve::fairness::{Density, Shape};
 use crate::curve::model::Model;
 use crate::solve::{Allow, Envelope, Indices, dot};
@@ -126,8 +127,8 @@ fn angle<const D: usize>(a: &SVector<f64, D>, b: &SVector<f64, D>) -> f64 {
 }
 
 impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
-    /// The chain of a curve with one element a span, from its state; the span `bent`, if any, closed the second-nearest way. `None` where a span cannot be closed. `memory` holds
-    /// [`memory_len`] numbers.
+    /// The chain of a curve with one element a span, from its state; the span `bent`, if any, closed the second-nearest way.
+    /// `None` where a span cannot be closed. `memory` holds [`memory_len`] numbers.
     pub(super) fn of<const D: usize>(
         tables: &'static Tables<N, C>,
         model: &Model<'_, D>,
@@ -247,9 +248,23 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
         Span::load(&self.spans[index * stride(N) + 4..])
     }
 
-    /// Whether the direction at an end of a span is an unknown.
-    pub(super) fn turns(&self, index: usize, end: usize) -> bool {
-        self.spans[index * stride(N) + 2 * end] >= 0.0
+    /// A joint's end of a span, from what it was: its point stands, and its tangent where that is given. `along` is the chord's
+    /// direction.
+    pub(super) fn joint_end<const D: usize>(
+        &self,
+        index: usize,
+        end: usize,
+        span: &Span<N>,
+        along: &SVector<f64, D>,
+        was: &End<D>,
+    ) -> End<D> {
+        let mut this = *was;
+        // Whether its direction is an unknown.
+        if self.spans[index * stride(N) + 2 * end] >= 0.0 {
+            turn(&mut this, along, span.shared[2 * end]);
+        }
+        this.curvature[0] = span.shared[2 * end + 1];
+        this
     }
 
     /// The weighed integrals.
@@ -450,4 +465,20 @@ pub(super) enum Law {
     Power(f64),
     /// That under which the curve has this length.
     Length(f64),
+}
+
+/// Turns a vector of the chord's system into the curve's; `along` is the chord's direction.
+pub(super) fn turned<const D: usize>(along: &SVector<f64, D>, [x, y]: [f64; 2]) -> SVector<f64, D> {
+    let mut out = SVector::zeros();
+    out[0] = along[0] * x - along[1] * y;
+    out[1] = along[1] * x + along[0] * y;
+    out
+}
+
+/// Turns an end's frame to a direction against the chord.
+pub(super) fn turn<const D: usize>(end: &mut End<D>, along: &SVector<f64, D>, theta: f64) {
+    let tangent = turned(along, [libm::cos(theta), libm::sin(theta)]);
+    end.frame[0] = tangent;
+    end.frame[1][0] = -tangent[1];
+    end.frame[1][1] = tangent[0];
 }

@@ -1,16 +1,17 @@
 //! The quintic that runs along a known curve: its speeds and stretches, by least squares.
 //!
 //! Positions, tangents and curvatures at the ends are the known curve's; of a quintic's freedoms that leaves `v` and `β` at
-//! either end. They are chosen so that `dκ/ds` (for an energy: `κ`) differs least from the known curve's at the same fraction of the
-//! arc length, in the mean square. A curve that is a minimum has no slope, so this difference is, to first order, by what the
-//! quintic's functional exceeds the known curve's: no other quintic with these ends has much less. What is left over is small,
-//! so that two steps by Gauss and Newton are mostly enough.
+//! either end. They are chosen so that `dκ/ds` (for an energy: `κ`) differs least from the known curve's at the same fraction
+//! of the arc length, in the mean square. A curve that is a minimum has no slope, so this difference is, to first order, by
+//! what the quintic's functional exceeds the known curve's: no other quintic with these ends has much less. What is left over
+//! is small, so that two steps by Gauss and Newton are mostly enough.
 
 use super::functions::slopes;
 use crate::basis::hermite;
 use crate::basis::lanes::{Lanes, WIDTH};
 use crate::basis::quadrature::legendre;
 use crate::curve::end::End;
+use crate::curve::fairness::{curvature_with_derivatives, slope_with_derivatives};
 
 /// Points of the rule by which curves are compared.
 const POINTS: usize = 8;
@@ -133,8 +134,8 @@ impl<const N: usize> Known<'_, N> {
 }
 
 /// Gives the ends of a planar element the speeds and stretches with which it runs along a known curve, from those that they
-/// have. `varies` tells whether `dκ/ds` is compared, or `κ`; a misfit that is the part `enough` of what is compared will do; a `warm` start is followed alone unless
-/// it leads to much. Returns the integral of the squared difference.
+/// have. `varies` tells whether `dκ/ds` is compared, or `κ`; a misfit that is the part `enough` of what is compared will do; a
+/// `warm` start is followed alone unless it leads to much. Returns the integral of the squared difference.
 pub(super) fn fit<const D: usize, const N: usize>(
     ends: &mut [End<D>; 2],
     known: &Known<'_, N>,
@@ -253,44 +254,14 @@ fn compare<const N: usize>(
                 sum
             })
         });
-        let [[a, b], [c, e], [f, g]] = d;
+        let [a, b] = d[0];
         let p = a * a + b * b;
-        let q = a * c + b * e;
-        let u = a * e - b * c;
-        let inverse = Lanes::ONE / p;
         let speed = p.sqrt();
-        let pace = speed * inverse;
+        let pace = speed * (Lanes::ONE / p);
         speeds[k] = speed;
         // The value's derivatives by C', C'', C'''.
-        let (value, slopes) = if varies {
-            let v = a * g - b * f;
-            let cube = inverse * inverse * inverse;
-            let value = (p * v - q * u * 3.0) * cube;
-            let (u3, q3, v2, down) = (u * 3.0, q * 3.0, v * 2.0, value * inverse * 6.0);
-            (
-                value,
-                [
-                    [
-                        (a * v2 + p * g - c * u3 - q3 * e) * cube - a * down,
-                        (b * v2 - p * f - e * u3 + q3 * c) * cube - b * down,
-                    ],
-                    [(q3 * b - a * u3) * cube, -(b * u3 + q3 * a) * cube],
-                    [-(p * b) * cube, p * a * cube],
-                ],
-            )
-        } else {
-            let third = inverse * pace;
-            let value = u * third;
-            let down = value * inverse * 3.0;
-            (
-                value,
-                [
-                    [e * third - a * down, -(c * third) - b * down],
-                    [-(b * third), a * third],
-                    [Lanes::ZERO; 2],
-                ],
-            )
-        };
+        let (value, slopes) =
+            if varies { slope_with_derivatives(&d) } else { curvature_with_derivatives(&d) };
         values[k] = value;
         for end in 0..2 {
             let [x, y] = tangents[end];

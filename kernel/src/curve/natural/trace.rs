@@ -4,7 +4,7 @@
 //! the last coefficients are nothing the curve is the true minimum variation curve. Elements then take their ends from it:
 //! positions, directions and curvatures are true, and only the quintics between them are not.
 
-use super::chain::{Chain, Effort, Ended, Watch, memory_len};
+use super::chain::{Chain, Effort, Ended, Watch, memory_len, turn, turned};
 use super::fit::{Known, fit};
 use super::functions::{FINE, FINE_FUNCTIONS, FINE_PAIRS, functions};
 use super::span::Span;
@@ -15,7 +15,6 @@ use crate::curve::end::End;
 use crate::curve::fairness::{Density, Shape};
 use crate::curve::model::Model;
 use crate::curve::start::give_speeds;
-use nalgebra::SVector;
 
 /// To rounding.
 const WHOLE: Effort = Effort { settled: 1e-10, iterations: 40, exact: true };
@@ -82,14 +81,6 @@ fn way(q: &[f64; FINE_FUNCTIONS], from: f64, to: f64) -> [f64; 2] {
     sums.map(|sum| sum * (to - from))
 }
 
-/// Turns a vector of the chord's system into the curve's; `along` is the chord's direction.
-fn turned<const D: usize>(along: &SVector<f64, D>, [x, y]: [f64; 2]) -> SVector<f64, D> {
-    let mut out = SVector::zeros();
-    out[0] = along[0] * x - along[1] * y;
-    out[1] = along[1] * x + along[0] * y;
-    out
-}
-
 impl TrueCurve<'_> {
     /// How far the curve may be off for want of functions.
     fn truncation(span: &Span<FINE_FUNCTIONS>) -> f64 {
@@ -97,8 +88,8 @@ impl TrueCurve<'_> {
         LAST_INTEGRAL * last * span.length()
     }
 
-    /// Writes elements along the curve, so many equal parts a span as `counts` says, into the state of `fine`, the same curve with so
-    /// many elements. Returns their natural cost.
+    /// Writes elements along the curve, so many equal parts a span as `counts` says, into the state of `fine`, the same curve
+    /// with so many elements. Returns their natural cost.
     pub(in crate::curve) fn write<const D: usize>(
         &self,
         coarse: &Model<'_, D>,
@@ -118,15 +109,7 @@ impl TrueCurve<'_> {
             let (q, length) = (span.coefficients(), span.length());
             let joints = [coarse.end(index, 0, coarse_state), coarse.end(index, 1, coarse_state)];
             let along = (joints[1].point - joints[0].point) / span.chord;
-            // A joint's end: its point stands, and its tangent where that is given.
-            let joint_end = |end: usize| {
-                let mut this = joints[end];
-                if self.chain.turns(index, end) {
-                    turn(&mut this, &along, span.shared[2 * end]);
-                }
-                this.curvature[0] = span.shared[2 * end + 1];
-                this
-            };
+            let joint_end = |end: usize| self.chain.joint_end(index, end, &span, &along, &joints[end]);
             let mut before = joint_end(0);
             let mut point = before.point;
             for part in 0..parts {
@@ -193,12 +176,4 @@ impl TrueCurve<'_> {
             first += count as usize;
         }
     }
-}
-
-/// Turns an end's frame to a direction against the chord.
-fn turn<const D: usize>(end: &mut End<D>, along: &SVector<f64, D>, theta: f64) {
-    let tangent = turned(along, [libm::cos(theta), libm::sin(theta)]);
-    end.frame[0] = tangent;
-    end.frame[1][0] = -tangent[1];
-    end.frame[1][1] = tangent[0];
 }
