@@ -95,11 +95,6 @@ fn curve(arguments: &CurveArguments) -> Result<Status, Failure> {
     if solution.status != Status::Converged {
         complain(&format!("warning: {}", advice(&options, solution)));
     }
-    if options.has_tolerance() && options.elements_per_span == 1 {
-        complain(
-            "warning: one element a span is not compared with more: allow more of them (--elements-per-span)",
-        );
-    }
     let off = (solution.fine_value - solution.value).abs();
     let nothing = NOTHING / (0..solution.functional.scale_power()).map(|_| solution.length).product::<f64>();
     if off > TRUSTED * solution.value.abs() + nothing {
@@ -226,11 +221,22 @@ fn advice(options: &Options, solution: &Solution) -> String {
                 None => format!("{growth}; {weights}"),
             }
         }
-        Status::Stalled if solution.error.is_some_and(|error| error > options.tolerance) => {
-            format!(
-                "stalled: {} elements a span do not reach the tolerance; allow more (--elements-per-span) or a larger one",
-                options.elements_per_span
-            )
+        Status::Stalled if options.has_tolerance() => {
+            let more = "allow more (--elements-per-span)";
+            match (options.elements_per_span, solution.error) {
+                (count, Some(error)) if error > options.tolerance => {
+                    let elements = if count == 1 {
+                        "one element a span does"
+                    } else {
+                        &format!("{count} elements a span do")
+                    };
+                    format!("stalled: {elements} not reach the tolerance; {more} or a larger one")
+                }
+                (1, None) => format!(
+                    "stalled: one element a span has nothing to be compared with, so its distance from the true curve is not known; {more}"
+                ),
+                _ => Status::Stalled.sentence().to_owned(),
+            }
         }
         status => status.sentence().to_owned(),
     }

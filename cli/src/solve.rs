@@ -266,10 +266,7 @@ impl Solution {
             iterations: report.iterations,
             linearisations: report.linearisations,
             functional: options.functional,
-            // One element a span is never compared with more.
-            error: Some(report.error).filter(|error| {
-                options.has_tolerance() && options.elements_per_span > 1 && error.is_finite()
-            }),
+            error: Some(report.error).filter(|error| options.has_tolerance() && error.is_finite()),
             value: report.value,
             fine_value: report.fine_value,
             length: report.length,
