@@ -46,5 +46,6 @@
 
 pub mod basis;
 pub mod curve;
+mod root;
 pub mod solve;
 pub mod toolpath;

@@ -258,7 +258,7 @@ fn a_curvature_of_given_size_keeps_it_and_finds_its_direction() {
 fn a_size_along_an_oblique_tangent_is_kept() {
     // What rounding leaves across the tangent must not be taken for a direction.
     for tangent in [[0.6, 0.8, 0.0], [1.0, 2.0, 0.0], [0.1, 0.3, 0.0], [0.3, 0.7, 0.2]] {
-        let length = libm::sqrt(tangent.iter().map(|x| x * x).sum());
+        let length = tangent.iter().map(|x| x * x).sum::<f64>().sqrt();
         let joints = [
             Joint::at([0.0; 3])
                 .with_tangent(Quantity::fixed(tangent))

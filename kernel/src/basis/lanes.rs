@@ -3,6 +3,7 @@
 //! Every operation acts on each number by itself, in the order in which it is written, so that the result has the same
 //! bits whether a machine does both at once or one after the other.
 
+use crate::root::sqrt_pair;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 /// How many numbers stand side by side: as many as the smallest vector unit takes.
@@ -19,7 +20,7 @@ impl Lanes {
 
     #[inline(always)]
     pub(crate) fn sqrt(self) -> Self {
-        Self([libm::sqrt(self.0[0]), libm::sqrt(self.0[1])])
+        Self(sqrt_pair(self.0))
     }
 
     /// The sum of all, first to last.

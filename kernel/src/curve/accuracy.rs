@@ -15,6 +15,7 @@ use super::natural::TrueCurve;
 use super::passes::Passes;
 use super::rows::place;
 use super::start::refine;
+use crate::root::sqrt;
 use crate::solve::{Outcome, Problem, Status, WorkspaceTooSmall};
 use nalgebra::SVector;
 
@@ -261,5 +262,5 @@ pub(super) fn distance<const D: usize>(
         let slope = if slope > 0.0 { slope } else { first.dot(&first) };
         t -= off.dot(&first) / slope;
     }
-    libm::sqrt(best)
+    sqrt(best)
 }

@@ -5,6 +5,7 @@ use super::error::{CurveError, Part};
 use super::joint::{Continuity, Curve, Given, Joint, Quantity};
 use super::obstacle::Side;
 use super::options::Options;
+use crate::root::sqrt;
 use nalgebra::Vector3;
 
 /// Below this fraction of the data's extent two points are the same.
@@ -37,7 +38,7 @@ pub(super) fn direction(vector: &[f64; 3]) -> Option<Vector3<f64>> {
         return None;
     }
     let scaled = Vector3::from(vector.map(|x| x / most));
-    Some(scaled / libm::sqrt(scaled.dot(&scaled)))
+    Some(scaled / sqrt(scaled.dot(&scaled)))
 }
 
 fn check_joint(joint: usize, data: &Joint) -> Result<(), CurveError> {
@@ -157,7 +158,7 @@ pub(super) fn check_length(curve: &Curve<'_>, length: f64) -> Result<(), CurveEr
     for joint in fixed.chain(back) {
         let here = Vector3::from(joint.position.value);
         let step = here - last;
-        sum += libm::sqrt(step.dot(&step));
+        sum += sqrt(step.dot(&step));
         last = here;
     }
     if length > sum { Ok(()) } else { Err(CurveError::LengthTooShort) }

@@ -11,6 +11,7 @@ use super::model::{Contact, Model};
 use super::passes::{Passes, weights_of_sums};
 use super::rows::place;
 use super::start::{cut, refine};
+use crate::root::sqrt;
 use crate::solve::{BlockList, Outcome, Problem, Status, WorkspaceTooSmall};
 use nalgebra::SVector;
 
@@ -207,7 +208,7 @@ impl<const D: usize> Foot<D> {
         }
         let [here, first, _] = place(&rows, t);
         let off = point - here;
-        let (distance, speed) = (libm::sqrt(off.dot(&off)), libm::sqrt(first.dot(&first)));
+        let (distance, speed) = (sqrt(off.dot(&off)), sqrt(first.dot(&first)));
         let mut tangent = first / speed;
         let at_end = (t == 0.0 && element == 0) || (t == 1.0 && element + 1 == count);
         if at_end && !model.curve.closed {

@@ -2,6 +2,7 @@
 
 use super::element::Element;
 use super::measure::{MeasureError, check};
+use crate::root::sqrt;
 use nalgebra::Vector3;
 
 /// Neighbouring elements whose tangents differ by less than this angle (radians) are joined smoothly in a B-spline.
@@ -54,7 +55,7 @@ pub fn bspline(
         let most = vector.amax();
         if most > 0.0 {
             let vector = vector / most;
-            Ok(most * libm::sqrt(vector.dot(&vector)))
+            Ok(most * sqrt(vector.dot(&vector)))
         } else {
             Err(MeasureError::Irregular { element })
         }

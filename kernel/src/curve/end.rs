@@ -10,6 +10,7 @@
 //! along its tangent follows the osculating parabola `p + s t + ½ s² κ`: a free node may slide along the curve without
 //! changing it, and a straight step would leave it.
 
+use crate::root::sqrt;
 use core::ops::Range;
 use nalgebra::SVector;
 
@@ -229,7 +230,7 @@ impl<const D: usize> SideStep<D> {
         if square == 0.0 {
             return;
         }
-        let angle = libm::sqrt(square);
+        let angle = sqrt(square);
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
         let rows: [SVector<f64, D>; D] = core::array::from_fn(|j| SVector::from_fn(|d, _| frame[D * j + d]));
         // The unit normal towards which the tangent turns.
@@ -260,6 +261,6 @@ pub(super) fn orthonormalise<const D: usize>(frame: &mut [SVector<f64, D>; D]) {
             let along = row.dot(&frame[i]);
             row -= frame[i] * along;
         }
-        frame[j] = row / libm::sqrt(row.dot(&row));
+        frame[j] = row / sqrt(row.dot(&row));
     }
 }

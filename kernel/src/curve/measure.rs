@@ -19,6 +19,7 @@ use super::rows;
 use crate::basis::bernstein::Bernstein;
 use crate::basis::hermite;
 use crate::basis::quadrature::FINEST;
+use crate::root::sqrt;
 use core::fmt;
 use nalgebra::Vector3;
 
@@ -178,7 +179,7 @@ pub fn plane_normal(elements: &[Element]) -> Option<[f64; 3]> {
         }
     });
     let along = longest / extent;
-    let along = along / libm::sqrt(along.dot(&along));
+    let along = along / sqrt(along.dot(&along));
     let mut off = Vector3::zeros();
     each(&mut |vector| {
         let vector = vector / extent;
@@ -194,7 +195,7 @@ pub fn plane_normal(elements: &[Element]) -> Option<[f64; 3]> {
         off -= along * along[least];
     }
     let normal = along.cross(&off);
-    let mut normal = normal / libm::sqrt(normal.dot(&normal));
+    let mut normal = normal / sqrt(normal.dot(&normal));
     let largest = (0..3).fold(0, |most, d| if normal[d].abs() > normal[most].abs() { d } else { most });
     if normal[largest] < 0.0 {
         normal = -normal;
@@ -211,7 +212,7 @@ fn part_length(rows: &[Vector3<f64>; 6], to: f64) -> f64 {
     let mut sum = 0.0;
     for (t, weight) in FINEST.iter() {
         let first = derivatives(rows, t * to)[0];
-        sum += weight * to * libm::sqrt(first.dot(&first));
+        sum += weight * to * sqrt(first.dot(&first));
     }
     sum
 }
@@ -233,14 +234,14 @@ fn properties(
     if !(p > 1e-28) {
         return Err(MeasureError::Irregular { element });
     }
-    let speed = libm::sqrt(p);
+    let speed = sqrt(p);
     let q = d1.dot(&d2);
     let (u, v) = (d1.cross(&d2), d1.cross(&d3));
     let tangent = d1 / speed;
     let curvature = (d2 - d1 * (q / p)) / p;
     let binormal = u / (p * speed);
     let numerator = v * p - u * (3.0 * q);
-    let size = libm::sqrt(binormal.dot(&binormal));
+    let size = sqrt(binormal.dot(&binormal));
     // The derivative of the binormal curvature vector by arc length.
     let slope = numerator / (p * p * p);
     let (signed, derivative) = match normal {

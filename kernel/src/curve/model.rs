@@ -15,6 +15,7 @@ use super::rows::{Integrand, Mirrored, RowDerivatives};
 use super::space::Space;
 use super::torsion::SpaceFunctional;
 use crate::basis::mirrored::{pair_count, pairs};
+use crate::root::sqrt;
 use crate::solve::{BlockList, Coupled, Problem, packed};
 use core::ops::Range;
 use nalgebra::SVector;
@@ -200,7 +201,7 @@ impl<const D: usize> Model<'_, D> {
             1 => Contact::Around { point: to, left: left * self.place.local_length(obstacle.clearance) },
             _ => {
                 let along = to - from;
-                Contact::Along { direction: along / libm::sqrt(along.dot(&along)) }
+                Contact::Along { direction: along / sqrt(along.dot(&along)) }
             }
         })
     }
@@ -760,7 +761,7 @@ where
     fn sums(&self, element: usize, state: &[f64]) -> [f64; 2] {
         let ends = [self.end(element, 0, state), self.end(element, 1, state)];
         let chord = ends[1].point - ends[0].point;
-        let least = LEAST_SPEED * libm::sqrt(chord.dot(&chord));
+        let least = LEAST_SPEED * sqrt(chord.dot(&chord));
         if !ends.iter().all(|end| end.speed > least) {
             return [f64::INFINITY; 2];
         }

@@ -8,6 +8,7 @@ use super::check::direction;
 use super::element::Element;
 use super::error::CurveError;
 use super::joint::{Curve, Given, Joint};
+use crate::root::sqrt;
 use nalgebra::{SVector, Vector3};
 
 /// A local orthonormal system of `D` axes.
@@ -29,7 +30,7 @@ impl<const D: usize> Placement<D> {
     pub(super) fn local_direction(&self, vector: &[f64; 3]) -> SVector<f64, D> {
         let Some(towards) = direction(vector) else { return SVector::zeros() };
         let local = SVector::<f64, D>::from_fn(|d, _| self.axes[d].dot(&towards));
-        local / libm::sqrt(local.dot(&local))
+        local / sqrt(local.dot(&local))
     }
 
     pub(super) fn local_curvature(&self, vector: &[f64; 3]) -> SVector<f64, D> {
@@ -44,7 +45,7 @@ impl<const D: usize> Placement<D> {
     /// The size of a curvature vector.
     pub(super) fn local_size(&self, value: &[f64; 3]) -> f64 {
         let vector = Vector3::from(*value);
-        libm::sqrt(vector.dot(&vector)) * self.unit
+        sqrt(vector.dot(&vector)) * self.unit
     }
 
     /// A parametric derivative, or a point of which only differences count: the local origin does not enter.
@@ -65,7 +66,7 @@ impl<const D: usize> Placement<D> {
     pub(super) fn slide(&self, joint: &Joint, k: usize) -> Option<SVector<f64, D>> {
         let guide = direction(&joint.guide)?;
         let local = SVector::<f64, D>::from_fn(|d, _| self.axes[d].dot(&guide));
-        let size = libm::sqrt(local.dot(&local));
+        let size = sqrt(local.dot(&local));
         if joint.position.given == Given::ON_LINE {
             return (k == 0 && size > 0.0).then(|| local / size);
         }
@@ -84,7 +85,7 @@ impl<const D: usize> Placement<D> {
         let mut across = Vector3::zeros();
         across[least] = 1.0;
         let first = guide.cross(&across);
-        let first = first / libm::sqrt(first.dot(&first));
+        let first = first / sqrt(first.dot(&first));
         let found = if k == 0 { first } else { guide.cross(&first) };
         Some(SVector::from_fn(|d, _| self.axes[d].dot(&found)))
     }
@@ -192,7 +193,7 @@ fn plane_axes(curve: &Curve<'_>, origin: &Vector3<f64>) -> Option<[Vector3<f64>;
             first = vector;
         }
     });
-    let extent = libm::sqrt(first.dot(&first));
+    let extent = sqrt(first.dot(&first));
     let first = first / extent;
     let mut second = Vector3::zeros();
     vectors(curve, origin, extent, |vector, error| {
@@ -202,7 +203,7 @@ fn plane_axes(curve: &Curve<'_>, origin: &Vector3<f64>) -> Option<[Vector3<f64>;
             second = off;
         }
     });
-    let width = libm::sqrt(second.dot(&second));
+    let width = sqrt(second.dot(&second));
     if width <= FLATNESS {
         // All on one line: any plane that holds it serves.
         let least = (0..3).fold(0, |least, d| if first[d].abs() < first[least].abs() { d } else { least });
@@ -210,10 +211,10 @@ fn plane_axes(curve: &Curve<'_>, origin: &Vector3<f64>) -> Option<[Vector3<f64>;
         unit[least] = 1.0;
         second = unit - first * first.dot(&unit);
     }
-    let second = second / libm::sqrt(second.dot(&second));
+    let second = second / sqrt(second.dot(&second));
     // What is left of a short vector leans back by its rounding: once more.
     let second = second - first * first.dot(&second);
-    let second = second / libm::sqrt(second.dot(&second));
+    let second = second / sqrt(second.dot(&second));
     let normal = first.cross(&second);
     let mut flat = true;
     vectors(curve, origin, extent, |vector, error| {

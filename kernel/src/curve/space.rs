@@ -13,6 +13,7 @@ use super::torsion::{
 use crate::basis::hermite;
 use crate::basis::mirrored::COORDINATES;
 use crate::basis::quadrature::{FINEST, Rule, lobatto};
+use crate::root::sqrt;
 use nalgebra::SVector;
 
 type Vector = SVector<f64, 3>;
@@ -88,7 +89,7 @@ impl Space {
 
     /// Takes the typical curvature from a start with this bending energy and length.
     pub(super) fn take_scale(&mut self, bending: f64, length: f64) {
-        let mean = libm::sqrt(bending / length);
+        let mean = sqrt(bending / length);
         let least = 1.0 / length;
         self.softening = SOFTENING * if mean > least { mean } else { least };
     }
@@ -137,7 +138,7 @@ impl Space {
             // Not a number counts as none.
             least = if square >= least { least } else { square };
         }
-        libm::sqrt(least)
+        sqrt(least)
     }
 
     /// Adds `factor` times the functional of an element with gradient and Hessian.

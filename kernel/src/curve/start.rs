@@ -14,6 +14,7 @@ use super::joint::{Continuity, Given, Joint};
 use super::model::Model;
 use super::placement::Placement;
 use super::rows::place;
+use crate::root::sqrt;
 use nalgebra::SVector;
 
 /// The speed at the ends of the quintic of least variation on an arc of turning `θ` is the arc's length times
@@ -44,7 +45,7 @@ fn perpendicular<const D: usize>(t: &SVector<f64, D>) -> SVector<f64, D> {
 
 fn unit<const D: usize>(v: &SVector<f64, D>) -> Option<SVector<f64, D>> {
     let square = v.dot(v);
-    (square > 0.0).then(|| v / libm::sqrt(square))
+    (square > 0.0).then(|| v / sqrt(square))
 }
 
 /// Turns a vector perpendicular to the unit vector `from` as `from` turns into `to` on the shortest way.
@@ -144,7 +145,7 @@ where
         let (a_unit, b_unit) = (unit(&a)?, unit(&b)?);
         if a_unit.dot(&b_unit) > 1.0 - STRAIGHT {
             let farther = a.dot(&a).min(b.dot(&b));
-            return Some([perpendicular(&a_unit), a_unit * (2.0 * libm::sqrt(farther))]);
+            return Some([perpendicular(&a_unit), a_unit * (2.0 * sqrt(farther))]);
         }
         let along = unit(&(b - a))?;
         Some([along, (a - along * a.dot(&along)) * 2.0])
@@ -266,7 +267,7 @@ where
         let across =
             unit(&beside).filter(|_| beside.dot(&beside) > UNDECIDED * UNDECIDED * vector.dot(&vector));
         if given.given != Given::SIZE {
-            let size = libm::sqrt(vector.dot(&vector));
+            let size = sqrt(vector.dot(&vector));
             return across.map_or(vector, |across| across * size);
         }
         // A value that runs along the tangent says nothing of the direction.
@@ -305,7 +306,7 @@ where
         let square = chord.dot(&chord);
         let across = chord - tangent * chord.dot(tangent);
         if chord.dot(&forward) < 0.0 && across.dot(&across) < STRAIGHT * square {
-            return perpendicular(tangent) * (2.0 / libm::sqrt(square));
+            return perpendicular(tangent) * (2.0 / sqrt(square));
         }
         across * (2.0 / square)
     }
@@ -329,17 +330,16 @@ where
     /// are tried too, and the fairest curve is taken.
     fn set_speeds(&self, ends: &mut [End<D>; 2]) {
         let chord = ends[1].point - ends[0].point;
-        let size = libm::sqrt(chord.dot(&chord));
+        let size = sqrt(chord.dot(&chord));
         let angle = |t: &SVector<f64, D>| {
             let along = chord.dot(t);
             let across = chord - t * along;
-            libm::atan2(libm::sqrt(across.dot(&across)), along)
+            libm::atan2(sqrt(across.dot(&across)), along)
         };
         let turn = (angle(&ends[0].frame[0]) + angle(&ends[1].frame[0])).min(MOST_TURN);
         let half = 0.5 * turn;
         let length = if half > 1e-4 { size * half / libm::sin(half) } else { size };
-        let bend =
-            libm::sqrt(ends.iter().map(|end| end.curvature_vector().norm_squared()).fold(0.0, f64::max));
+        let bend = sqrt(ends.iter().map(|end| end.curvature_vector().norm_squared()).fold(0.0, f64::max));
         if turn < GENTLE_TURN && bend * size < GENTLE_BEND {
             give_speeds(ends, length, turn);
             return;
@@ -491,7 +491,7 @@ where
         }
         // An element whose joints moved apart is run through as much faster.
         let chord = ends[1].point - ends[0].point;
-        let grown = libm::sqrt(chord.dot(&chord) / old_chord.dot(&old_chord));
+        let grown = sqrt(chord.dot(&chord) / old_chord.dot(&old_chord));
         if grown.is_finite() && grown > 0.0 {
             for end in &mut ends {
                 end.speed *= grown;
@@ -513,7 +513,7 @@ fn end_of<const D: usize>(
     second: &SVector<f64, D>,
     before: Option<&End<D>>,
 ) -> End<D> {
-    let speed = libm::sqrt(first.dot(first));
+    let speed = sqrt(first.dot(first));
     let tangent = unit(first).or(before.map(|end| end.frame[0])).unwrap_or_else(SVector::zeros);
     let along = second.dot(&tangent);
     let curvature = (second - tangent * along) / (speed * speed).max(f64::MIN_POSITIVE);

@@ -33,6 +33,7 @@
 //! `κ² τ² · κ²/(κ² + ε²) = w² / (S p³)` away: at inflections it is the square of `db/ds`. That square itself is a plain
 //! density (see [`super::fairness`]) and not counted here: a softened density of the space MVC is what must be added.
 
+use crate::root::sqrt;
 use nalgebra::{SMatrix, SVector};
 
 type Vector = SVector<f64, 3>;
@@ -166,7 +167,7 @@ fn softened(x: &[f64; 6], square: f64) -> [f64; 6] {
 #[inline]
 fn value_at(functional: SpaceFunctional, softening: f64, x: &[f64; 6]) -> f64 {
     let [big_u, w, p, q, _, v] = *x;
-    let root = libm::sqrt(p);
+    let root = sqrt(p);
     let [big_s, _, _, _, g, _] = softened(x, softening * softening);
     let value = match functional {
         SpaceFunctional::Mvc => {
@@ -235,7 +236,7 @@ pub(crate) fn torsion(softening: f64, d: &[Vector; 3]) -> f64 {
 pub(crate) fn torsion_and_slope(softening: f64, d: &[Vector; 4]) -> [f64; 2] {
     let [d1, d2, d3, d4] = d;
     let [big_s, w, p, _, g, v] = softened(&Invariants::at(d1, d2, d3, d4).x, softening * softening);
-    [w / big_s, (v - 2.0 * w * (g / big_s)) / big_s / libm::sqrt(p)]
+    [w / big_s, (v - 2.0 * w * (g / big_s)) / big_s / sqrt(p)]
 }
 
 /// The torsion with its exact first and second derivatives.
@@ -264,7 +265,7 @@ pub(crate) fn torsion_derivatives(softening: f64, d: &[Vector; 3]) -> Torsion {
 #[inline]
 fn slope_of_curvature(x: &[f64; 6]) -> Outer {
     let [big_u, _, p, q, g, _] = *x;
-    let b = 1.0 / libm::sqrt(p);
+    let b = 1.0 / sqrt(p);
     let by_p = b * b;
     let c = by_p * by_p * by_p * by_p * by_p * b;
     let by_u = 1.0 / big_u;
@@ -298,7 +299,7 @@ fn slope_of_curvature(x: &[f64; 6]) -> Outer {
 fn turning_of_normal(x: &[f64; 6]) -> Outer {
     let [big_u, w, p, ..] = *x;
     let (by_u, by_p) = (1.0 / big_u, 1.0 / p);
-    let c = by_p * by_p * by_p * libm::sqrt(p);
+    let c = by_p * by_p * by_p * sqrt(p);
     let (ratio, square) = (w * by_u, w * w * by_u);
     let mut first = [0.0; 6];
     let mut half = [[0.0; 6]; 6];
@@ -318,7 +319,7 @@ fn turning_of_normal(x: &[f64; 6]) -> Outer {
 #[inline]
 fn slope_of_torsion(x: &[f64; 6]) -> Outer {
     let [big_u, w, p, _, g, v] = *x;
-    let b = 1.0 / libm::sqrt(p);
+    let b = 1.0 / sqrt(p);
     let by_p = b * b;
     let by_u = 1.0 / big_u;
     let h = g * by_u;
@@ -361,7 +362,7 @@ fn slope_of_torsion(x: &[f64; 6]) -> Outer {
 fn bending(x: &[f64; 6]) -> Outer {
     let [big_u, _, p, ..] = *x;
     let by_p = 1.0 / p;
-    let c = by_p * by_p * by_p * libm::sqrt(p);
+    let c = by_p * by_p * by_p * sqrt(p);
     let mut first = [0.0; 6];
     let mut half = [[0.0; 6]; 6];
     first[U] = c;
@@ -375,7 +376,7 @@ fn bending(x: &[f64; 6]) -> Outer {
 #[inline]
 fn twisting(x: &[f64; 6]) -> Outer {
     let [big_u, w, p, ..] = *x;
-    let root = libm::sqrt(p);
+    let root = sqrt(p);
     let by_p = 1.0 / p;
     let by_u = 1.0 / big_u;
     let torsion = w * by_u;
@@ -634,7 +635,7 @@ mod tests {
             let d = reparametrised(&helix(r, c, 3.0 * t), &[speed, g2, g3, g4]);
             let square = r * r + c * c;
             let (curvature, twist) = (r / square, c / square);
-            let ds = speed * libm::sqrt(square);
+            let ds = speed * sqrt(square);
             let found = torsion(0.0, &[d[0], d[1], d[2]]);
             assert!((found - twist).abs() < 1e-13 * (1.0 + twist.abs()), "{found} {twist}");
             let energy = space_density(Mec, 0.0, &d);

@@ -6,6 +6,7 @@
 
 use super::problem::packed_len;
 use super::workspace::Indices;
+use crate::root::sqrt;
 
 /// The shape of an envelope.
 #[derive(Clone, Copy)]
@@ -148,13 +149,13 @@ impl Envelope<'_, '_> {
             let noise = PIVOT_ROUNDING * diagonal[0].abs() + NORM_ROUNDING * norm;
             let may_be_negative = allow == Allow::OneNegative && negative.is_none();
             diagonal[0] = if pivot > noise {
-                libm::sqrt(pivot)
+                sqrt(pivot)
             } else if pivot >= -noise {
                 entries.fill(0.0);
                 IMMOVABLE
             } else if may_be_negative && -pivot > LEAST_NEGATIVE * diagonal[0].abs() {
                 negative = Some(r);
-                libm::sqrt(-pivot)
+                sqrt(-pivot)
             } else {
                 return Err(Indefinite { row: r, pivot });
             };

@@ -9,6 +9,7 @@ use super::relax;
 use super::report::{Control, Observer, Outcome, Record, Status};
 use super::trust_region::{self, Radius, Vectors};
 use super::workspace::{Indices, Layout, Workspace, WorkspaceTooSmall};
+use crate::root::sqrt;
 
 /// How to iterate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +56,7 @@ const ROUNDING_SAFETY: f64 = 16.0;
 /// rounding errors proportional to their natural size.
 fn noise(value: f64, natural: f64) -> f64 {
     let unit = ROUNDING_SAFETY * f64::EPSILON;
-    unit * libm::sqrt(value * natural) + unit * unit * natural + f64::EPSILON * value
+    unit * sqrt(value * natural) + unit * unit * natural + f64::EPSILON * value
 }
 
 /// Minimises a problem from `state`, which holds the best state found when this returns. Memory: at least
@@ -183,7 +184,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         if !value.is_finite() {
             return outcome;
         }
-        let root = libm::sqrt(self.problem.elements().max(1) as f64);
+        let root = sqrt(self.problem.elements().max(1) as f64);
         let mut radius = Radius(settings.first_radius * root);
         let least_radius = 1e-9 * root;
         let mut shift = 0.0;

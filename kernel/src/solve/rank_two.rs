@@ -15,6 +15,7 @@
 //! (its determinant with `S` changes sign) and the rest does not undo it.
 
 use super::envelope::{Allow, Envelope, Factored, dot};
+use crate::root::sqrt;
 
 /// The gradients, the matrix between them, and room for `Y`.
 pub(super) struct RankTwo<'a> {
@@ -41,7 +42,7 @@ impl<'a> RankTwo<'a> {
     pub(super) fn norm(&self) -> f64 {
         let [a, b] = self.gradients.map(|g| dot(g, g));
         let [[aa, ab], [_, bb]] = self.second;
-        aa.abs() * a + 2.0 * ab.abs() * libm::sqrt(a * b) + bb.abs() * b
+        aa.abs() * a + 2.0 * ab.abs() * sqrt(a * b) + bb.abs() * b
     }
 
     /// Takes a new factorisation. Returns whether the whole matrix is positive definite.
@@ -103,8 +104,8 @@ impl<'a> RankTwo<'a> {
 /// The largest eigenvalue of a symmetric matrix, and its direction, of length 1.
 fn largest_eigenpair([[a, b], [_, c]]: &[[f64; 2]; 2]) -> (f64, [f64; 2]) {
     let (mean, half) = (0.5 * (a + c), 0.5 * (a - c));
-    let spread = libm::sqrt(half * half + b * b);
+    let spread = sqrt(half * half + b * b);
     let (x, y) = if half >= 0.0 { (half + spread, *b) } else { (*b, spread - half) };
-    let size = libm::sqrt(x * x + y * y);
+    let size = sqrt(x * x + y * y);
     (mean + spread, if size > 0.0 { [x / size, y / size] } else { [1.0, 0.0] })
 }

@@ -6,6 +6,7 @@
 
 use super::envelope::{Allow, Envelope, Factored, dot};
 use super::rank_two::RankTwo;
+use crate::root::sqrt;
 
 /// The radius of a trust region, and how it learns from steps.
 #[derive(Clone, Copy, Debug)]
@@ -107,7 +108,7 @@ pub(super) fn solve(
     if let Some(coupling) = &vectors.coupling {
         norm += coupling.norm();
     }
-    let gradient_length = libm::sqrt(dot(vectors.gradient, vectors.gradient));
+    let gradient_length = sqrt(dot(vectors.gradient, vectors.gradient));
     let allow = vectors.coupling.as_ref().map_or(Allow::Definite, |coupling| coupling.allow);
     let (mut low, mut high) = (0.0f64, gradient_length / radius + norm);
     if !high.is_finite() {
@@ -142,7 +143,7 @@ pub(super) fn solve(
         };
         vectors.newton(envelope, factored);
         let square = dot(vectors.step, vectors.step);
-        let length = libm::sqrt(square);
+        let length = sqrt(square);
         let predicted = 0.5 * (shift * square - dot(vectors.gradient, vectors.step));
         let found = Step { shift, length, predicted };
         if (shift == 0.0 && length <= radius) || (length - radius).abs() <= RADIUS_TOLERANCE * radius {
@@ -185,7 +186,7 @@ fn between(low: f64, high: f64, wanted: f64) -> f64 {
     if wanted > low && wanted < high {
         return wanted;
     }
-    libm::sqrt(low * high).max(low + 0.01 * (high - low))
+    sqrt(low * high).max(low + 0.01 * (high - low))
 }
 
 /// The hard case: the gradient has no part along the direction of negative curvature, so the shifted step stays
@@ -198,12 +199,12 @@ fn to_boundary(
     found: Step,
 ) -> Step {
     let Vectors { gradient, step, direction, .. } = vectors;
-    let size = libm::sqrt(dot(direction, direction));
+    let size = sqrt(dot(direction, direction));
     let downhill = if dot(gradient, direction) > 0.0 { -1.0 } else { 1.0 };
     direction.iter_mut().for_each(|z| *z *= downhill / size);
     let along = dot(step, direction);
     let missing = radius * radius - found.length * found.length;
-    let reach = -along + libm::sqrt(along * along + missing);
+    let reach = -along + sqrt(along * along + missing);
     for (s, z) in step.iter_mut().zip(direction.iter()) {
         *s += reach * z;
     }

@@ -24,6 +24,7 @@
 use super::{Chain, Kind, PathError, Position, flatten};
 use crate::basis::bernstein::{Bernstein, Dyadic};
 use crate::curve::Element;
+use crate::root::sqrt;
 
 /// Arcs whose chord makes an angle with the end tangents whose cosine is below this are not made: they turn
 /// by 2.94 rad at most.
@@ -122,7 +123,7 @@ pub fn biarc(
     // cancellation for parallel tangents.
     let square = dot(chord, chord);
     let along = dot(chord, sum);
-    let denominator = along + libm::sqrt(along * along + dot(difference, difference) * square);
+    let denominator = along + sqrt(along * along + dot(difference, difference) * square);
     if denominator.is_nan() || denominator <= 0.0 {
         return None;
     }
@@ -160,7 +161,7 @@ impl Arc {
     /// chord.
     fn bulge(&self) -> (f64, f64) {
         let chord = minus(self.end, self.start);
-        let length = libm::sqrt(dot(chord, chord));
+        let length = sqrt(dot(chord, chord));
         let sine = cross(self.start_tangent, chord).abs();
         let half = sine / (length + dot(self.start_tangent, chord));
         (half, 0.5 * length * half)
@@ -172,7 +173,7 @@ fn reflect(tangent: [f64; 2], chord: [f64; 2]) -> Option<([f64; 2], f64)> {
     let square = dot(chord, chord);
     let along = dot(tangent, chord);
     // A chord without length has no arc either.
-    if square == 0.0 || along < LEAST_COSINE * libm::sqrt(square) {
+    if square == 0.0 || along < LEAST_COSINE * sqrt(square) {
         return None;
     }
     let twice = 2.0 * along / square;
@@ -397,7 +398,7 @@ fn prove(chain: &Chain<'_>, arc: &Arc, from: Position, to: Position) -> Option<f
 /// `|R − ρ|` from `e = ±(R² − ρ²)/(2R)`, whose sign is the curvature's inside the circle. Not a number beyond
 /// the centre.
 fn from_circle(e: f64, curvature: f64) -> f64 {
-    let root = libm::sqrt(1.0 - 2.0 * e * curvature);
+    let root = sqrt(1.0 - 2.0 * e * curvature);
     if root.is_nan() { f64::INFINITY } else { 2.0 * e.abs() / (1.0 + root) }
 }
 
@@ -413,7 +414,7 @@ fn tangent(chain: &Chain<'_>, at: Position, before: bool) -> [f64; 2] {
     let [x, y, _] = chain.coordinates(index);
     let d = [x.derivative().value(t), y.derivative().value(t)];
     // Regular, so not zero.
-    let speed = libm::sqrt(dot(d, d));
+    let speed = sqrt(dot(d, d));
     [d[0] / speed, d[1] / speed]
 }
 
@@ -462,8 +463,8 @@ mod tests {
                 // The end lies on the circle and the tangent there is across the radius, both by the centre.
                 if let Move::Arc { centre, .. } = arc.motion() {
                     let (r0, r1) = (minus(arc.start, centre), minus(arc.end, centre));
-                    let radius = libm::sqrt(dot(r0, r0));
-                    assert!((libm::sqrt(dot(r1, r1)) - radius).abs() < 1e-14 * radius);
+                    let radius = sqrt(dot(r0, r0));
+                    assert!((sqrt(dot(r1, r1)) - radius).abs() < 1e-14 * radius);
                     assert!(dot(r1, arc.end_tangent).abs() < 1e-13 * radius.max(1.0));
                 }
             }

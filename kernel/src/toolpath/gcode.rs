@@ -23,6 +23,7 @@ use core::fmt::{self, Write};
 
 use super::{Arcs, Chord, Chords, Move, PathError, Segment, arcs, chords};
 use crate::curve::Element;
+use crate::root::sqrt;
 
 /// The most that rounding moves a point, in units of the last decimal: √3 halves, and a fifth of it for the
 /// rounding of the product that finds the nearest decimal.
@@ -478,7 +479,7 @@ impl<W: Write> Program<'_, W> {
         let whole = 0.5 * radius * half * half;
         // Not a number if the radius overflows: then the arc is straight.
         let whole = if whole.is_finite() { whole } else { 0.0 };
-        let count = libm::ceil(libm::sqrt(whole / left)).clamp(1.0, 1e6);
+        let count = libm::ceil(sqrt(whole / left)).clamp(1.0, 1e6);
         let side = if clockwise { 1.0 } else { -1.0 };
         let deviation = segment.deviation + whole / (count * count);
         for k in 1..count as u32 {
@@ -584,7 +585,7 @@ struct PrintableArc {
 }
 
 fn length(x: f64, y: f64) -> f64 {
-    libm::sqrt(x * x + y * y)
+    sqrt(x * x + y * y)
 }
 
 #[cfg(test)]

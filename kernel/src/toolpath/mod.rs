@@ -25,6 +25,7 @@ use core::fmt;
 
 use crate::basis::bernstein::{Bernstein, Dyadic};
 use crate::curve::Element;
+use crate::root::sqrt;
 
 /// Joints that turn by more than this angle (radians) are corners.
 const CORNER: f64 = 1e-3;
@@ -347,7 +348,7 @@ fn is_corner(before: &Element, after: &Element) -> bool {
     // `u` points backwards.
     let cosine = -(u[0] * v[0] + u[1] * v[1] + u[2] * v[2]);
     let sine = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-    let sine = libm::sqrt(sine[0] * sine[0] + sine[1] * sine[1] + sine[2] * sine[2]);
+    let sine = sqrt(sine[0] * sine[0] + sine[1] * sine[1] + sine[2] * sine[2]);
     cosine < 0.0 || sine > CORNER * cosine
 }
 
@@ -363,5 +364,5 @@ fn first_leg(points: &[[f64; 3]; 6]) -> [f64; 3] {
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     let (x, y, z) = (b[0] - a[0], b[1] - a[1], b[2] - a[2]);
-    libm::sqrt(x * x + y * y + z * z)
+    sqrt(x * x + y * y + z * z)
 }

@@ -56,7 +56,7 @@ impl Dice {
     pub fn direction(&mut self) -> Vector {
         let z = self.within(1.0);
         let (sin, cos) = libm::sincos(self.between(0.0, TAU));
-        let r = libm::sqrt(1.0 - z * z);
+        let r = (1.0 - z * z).sqrt();
         [r * cos, r * sin, z]
     }
 

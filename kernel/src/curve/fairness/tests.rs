@@ -1,6 +1,7 @@
 //! The densities against their own differences, and against the formulas in their plainest form.
 
 use super::*;
+use crate::root::sqrt;
 
 const PLAIN: Weights = Weights { variation: 0.0, bending: 0.0, length: 0.0 };
 
@@ -97,7 +98,7 @@ fn plain(d: &[[Lanes; 3]; 3], lane: usize) -> [f64; 3] {
     let cross = |a: [f64; 3], b: [f64; 3]| {
         [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
     };
-    let v = libm::sqrt(dot(a, a));
+    let v = sqrt(dot(a, a));
     let (u, du) = (cross(a, b), cross(a, c));
     let slope: [f64; 3] =
         core::array::from_fn(|k| (du[k] / (v * v * v) - 3.0 * dot(a, b) * u[k] / (v * v * v * v * v)) / v);

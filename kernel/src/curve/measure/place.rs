@@ -7,6 +7,7 @@ use super::{
 use crate::basis::bernstein::Bernstein;
 use crate::basis::hermite;
 use crate::curve::element::Element;
+use crate::root::sqrt;
 use nalgebra::Vector3;
 
 /// What holds at parameter `t`, 0 to 1, of an element.
@@ -56,7 +57,7 @@ pub fn at_length(elements: &[Element], s: f64) -> Result<CurvePoint, MeasureErro
             low = t;
         }
         let first = derivatives(&rows, t)[0];
-        let newton = t - off / libm::sqrt(first.dot(&first));
+        let newton = t - off / sqrt(first.dot(&first));
         let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
         if (next - t).abs() <= 4.0 * f64::EPSILON {
             t = next;
@@ -100,7 +101,7 @@ pub fn closest(elements: &[Element], point: [f64; 3]) -> Result<CurvePoint, Meas
             for a in 0..6 {
                 offset += rows[a] * basis[0][a];
             }
-            let distance = unit * libm::sqrt(offset.dot(&offset));
+            let distance = unit * sqrt(offset.dot(&offset));
             if distance < best.0 {
                 best = (distance, index, t);
             }

@@ -5,6 +5,7 @@ use super::span::{COLUMNS, Condensed, Span, Weigh, condense};
 use crate::curve::end::End;
 use crate::curve::fairness::{Density, Shape};
 use crate::curve::model::Model;
+use crate::root::sqrt;
 use crate::solve::{Allow, Envelope, Indices, dot};
 use nalgebra::SVector;
 
@@ -150,7 +151,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
             let mut own = [0.0; N];
             own[0] = if stretched > 0.0 { stretched.min(4.0) } else { 4.0 };
             let mut span = Span {
-                chord: libm::sqrt(chord.dot(&chord)),
+                chord: sqrt(chord.dot(&chord)),
                 shared: [phi[0], ends[0].curvature[0], phi[1], ends[1].curvature[0]],
                 own,
             };

@@ -12,6 +12,7 @@ use crate::basis::lanes::{Lanes, WIDTH};
 use crate::basis::quadrature::legendre;
 use crate::curve::end::End;
 use crate::curve::fairness::{curvature_with_derivatives, slope_with_derivatives};
+use crate::root::sqrt;
 
 /// Points of the rule by which curves are compared.
 const POINTS: usize = 8;
@@ -359,7 +360,7 @@ impl Compared {
             if !(pivot > 0.0) {
                 return None;
             }
-            factor[i][i] = libm::sqrt(pivot);
+            factor[i][i] = sqrt(pivot);
             for k in 0..i {
                 step[i] -= factor[i][k] * step[k];
             }

@@ -2,6 +2,7 @@
 
 use super::functions::{BEYOND, Tables, rough_sine_cosine, sine_cosine};
 use crate::basis::lanes::Lanes;
+use crate::root::sqrt;
 
 /// A span: its chord's length, the directions at its ends against the chord and the curvatures there, `φ₀, κ₀, φ₁, κ₁`,
 /// and its own values: `λ = L/chord`, then the coefficients of the functions beyond the cubics.
@@ -119,7 +120,7 @@ impl<const N: usize> Span<N> {
     /// `∫ θ'² du`, the square of the turning where that is even.
     pub(super) fn turning<const C: usize>(&self, tables: &Tables<N, C>) -> f64 {
         let q = self.coefficients();
-        libm::sqrt(inner(&q, &product(&tables.slope, &q)).max(0.0))
+        sqrt(inner(&q, &product(&tables.slope, &q)).max(0.0))
     }
 
     /// Its weighed integrals.
@@ -396,7 +397,7 @@ pub(super) fn condense<const N: usize, const C: usize>(
         if !(pivot > 0.0) {
             return None;
         }
-        let root = libm::sqrt(pivot);
+        let root = sqrt(pivot);
         reduced[f][f] = root;
         for k in 4..f {
             for r in 0..COLUMNS {

@@ -15,6 +15,7 @@ use crate::curve::end::End;
 use crate::curve::fairness::{Density, Shape};
 use crate::curve::model::Model;
 use crate::curve::start::give_speeds;
+use crate::root::sqrt;
 
 /// To rounding.
 const WHOLE: Effort = Effort { settled: 1e-10, iterations: 40, exact: true };
@@ -127,7 +128,7 @@ impl TrueCurve<'_> {
                 let piece = length / count;
                 let [a, b] = [before.curvature[0], after.curvature[0]];
                 let mut ends = [before, after];
-                give_speeds(&mut ends, piece, piece * libm::sqrt(0.5 * (a * a + b * b)));
+                give_speeds(&mut ends, piece, piece * sqrt(0.5 * (a * a + b * b)));
                 let known = Known { direction: &q, length, from, to };
                 fit(&mut ends, &known, fine.weights.variation > 0.0, false, ENOUGH);
                 for (end, value) in ends.iter().enumerate() {
