@@ -6,6 +6,7 @@
 # make table         Appendix A of the thesis: published, ours, Ceres
 # make random        20,000 random problems, judged independently; libspiro and OpenCASCADE beside
 # make bench         minvar against Ceres, libspiro and OpenCASCADE, as ratios in one run (some minutes)
+# make profile       instructions an element of every set of Appendix A, and where they go
 # make memory        bytes of workspace, stack and code
 # make pictures      draws docs/*.svg anew
 # make figures       draws the figures of thesis chapter 4 into docs/figures, with Table 4.1 computed anew
@@ -21,10 +22,10 @@ OUT := coving
 LIB := target/release/libminvar.a
 WARN := -std=c11 -Wall -Wextra -Wpedantic -Wconversion -Werror
 
-.PHONY: coving test test-clients lint header help tools lib examples table random bench peer-tools memory pictures figures clean
+.PHONY: coving test test-clients lint header help tools lib examples table random bench profile peer-tools memory pictures figures clean
 
 help:
-	@sed -n 's/^# \{0,1\}//p' Makefile | head -14
+	@sed -n 's/^# \{0,1\}//p' Makefile | head -15
 
 tools:
 	@command -v $(CARGO) >/dev/null || { echo "minvar needs Rust 1.89 or later: https://rustup.rs" >&2; exit 1; }
@@ -101,6 +102,17 @@ bench: $(PEERS)/least_squares $(PEERS)/spiro $(PEERS)/opencascade
 random: $(PEERS)/random_spiro $(PEERS)/random_occt
 	$(CARGO) run --locked --release -p minvar-tests --bin random -- \
 		--spiro $(PEERS)/random_spiro --occt $(PEERS)/random_occt $(RANDOM)
+
+# Counted by valgrind's callgrind: no other program on the machine changes a figure.
+profile: tools
+	@scripts/need.sh valgrind valgrind "what counts instructions"
+	$(CARGO) build --locked --release -p minvar-tests --bin profile
+	@for decrease in 1e-6 1e-12; do \
+		printf '\nTo %s: thousand instructions an element, and how many of a hundred go where.\n' $$decrease; \
+		echo '| set | elements | iterations | linearisations an element | thousand | start | arc length | fit | Hessians | unknowns | values | algebra | figures | rest |'; \
+		echo '| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |'; \
+		scripts/profile.sh target/release/profile $$decrease || exit 1; \
+	done
 
 memory: examples
 	$(CC) -std=gnu11 -Wall -Wextra -O2 -Iinclude tests/c/memory.c $(LIB) -lm -lpthread -o target/c_examples/memory

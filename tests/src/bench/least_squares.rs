@@ -11,10 +11,9 @@ use super::record::Record;
 use super::rounds::race;
 use super::task::Task;
 use crate::appendix::figure;
-use crate::ceres;
-use crate::compare::{SETS, kernel_joints, reference};
+use crate::compare::{SETS, reference};
 use crate::curves::times;
-use minvar::curve::{Element, Functional};
+use minvar::curve::Element;
 
 /// The peer's name.
 pub const NAME: &str = "ceres";
@@ -49,8 +48,7 @@ struct Way {
 pub fn run(peer: &mut Peer, mut done: impl FnMut(Vec<Record>)) -> Result<(), String> {
     for (id, functional) in SETS {
         let figure = figure(id);
-        let kernel = if functional == ceres::Functional::Mec { Functional::MEC } else { Functional::MVC };
-        let task = Task::new(short_name(id), kernel_joints(&figure), figure.closed, kernel);
+        let task = Task::of_set(short_name(id), &figure, functional);
         let polished = reference(&figure, functional, 1);
         let polished: Vec<Element> = polished
             .rows

@@ -7,8 +7,7 @@ use super::ours::Solver;
 use super::rounds::median;
 use super::task::Task;
 use crate::appendix::figure;
-use crate::ceres;
-use crate::compare::{SETS, kernel_joints};
+use crate::compare::SETS;
 use minvar::curve::{Functional, Joint, Options};
 use minvar::solve::Status;
 use serde::Serialize;
@@ -53,9 +52,7 @@ pub fn run(to: &Path) -> Result<(), String> {
     );
     println!("| case | update µs | an element | solve µs | ratio |\n| --- | --- | --- | --- | --- |");
     for (id, functional) in SETS {
-        let kernel = if functional == ceres::Functional::Mec { Functional::MEC } else { Functional::MVC };
-        let figure = figure(id);
-        let task = Task::new(format!("{id} {functional:?}"), kernel_joints(&figure), figure.closed, kernel);
+        let task = Task::of_set(format!("{id} {functional:?}"), &figure(id), functional);
         if let Some(line) = warm(&task) {
             println!(
                 "| {} | {:.1} | {:.2} | {:.1} | {:.2} |",

@@ -4,6 +4,9 @@
 
 use super::ours::Solver;
 use super::peer::Peer;
+use crate::appendix::Figure;
+use crate::ceres;
+use crate::compare::kernel_joints;
 use crate::curves::{
     cross, deviation, distance, dot, end_shape, gauss_legendre, norm, shape, sub, times, unit,
 };
@@ -60,6 +63,16 @@ impl Task {
             vectors.iter().all(|vector| vector[2] == 0.0)
         });
         Self { name: name.into(), joints, closed, functional, planar, unit, elements_per_span: 1 }
+    }
+
+    /// A set of Appendix A.
+    pub fn of_set(name: impl Into<String>, figure: &Figure, functional: ceres::Functional) -> Self {
+        let functional = match functional {
+            ceres::Functional::Mvc => Functional::MVC,
+            ceres::Functional::Mec => Functional::MEC,
+            ceres::Functional::SiMvc => Functional::SI_MVC,
+        };
+        Self::new(name, kernel_joints(figure), figure.closed, functional)
     }
 
     /// The name of the functional.
