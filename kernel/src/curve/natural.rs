@@ -29,6 +29,8 @@ pub(super) use trace::{TrueCurve, trace, trace_len};
 use super::fairness::{Density, Shape};
 use super::joint::Given;
 use super::model::{Division, Model};
+use super::report::NOTHING;
+use crate::solve::Problem;
 use chain::{Chain, Effort, Ended, Law};
 use fit::{Known, fit};
 use functions::COARSE;
@@ -36,6 +38,8 @@ use span::Weigh;
 
 /// For start values.
 const ROUGH: Effort = Effort { settled: 3e-3, iterations: 12, exact: false };
+/// A curve that settles where it costs by this factor more than it did to start with has gone astray.
+const RISES: f64 = 10.0;
 /// The elements' part of what is left over may be this share of all.
 const SHARE: f64 = 0.03;
 /// The memory that [`improve`] needs for so many joints and spans.
@@ -111,8 +115,17 @@ where
     let (asked, law) = task(model, wish.length);
     let mut weigh = asked;
     // A curve that grows may have no minimum: what follows goes on from here, and finds out.
-    let ended = chain.settle(&mut weigh, law, &ROUGH, watch);
+    let mut began = None;
+    let ended = chain.settle(&mut weigh, law, &ROUGH, &mut |sums, step| {
+        began.get_or_insert(model.value_of(sums));
+        watch(sums, step)
+    });
     if matches!(ended, Ended::Failed | Ended::Stopped) {
+        return None;
+    }
+    let most = RISES * began.unwrap_or(f64::INFINITY) + NOTHING * model.natural_cost();
+    if wish.length.is_none() && !(model.value_of(&chain.sums()) <= most) {
+        // A span was closed another way than it started.
         return None;
     }
     let mut misfit = 0.0;

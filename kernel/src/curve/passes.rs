@@ -67,7 +67,9 @@ pub(super) struct Passes<'a> {
     /// Whether the observer asked to stop.
     cancelled: bool,
     hurries: bool,
-    /// Whether elements that have been laid along a known curve are taken as they are as far as possible.
+    /// Whether elements have been laid along a known curve.
+    laid: bool,
+    /// Whether such elements are taken as they are as far as possible.
     hastens: bool,
 }
 
@@ -90,6 +92,7 @@ impl<'a> Passes<'a> {
             multiplier: 0.0,
             cancelled: false,
             hurries: false,
+            laid: false,
             hastens: false,
         }
     }
@@ -248,7 +251,8 @@ impl<'a> Passes<'a> {
         Shape<D>: Density<D>,
     {
         let Some(target) = self.length else {
-            let (first, longest) = if self.hastens { (0, NEAR) } else { (RELAXATION, 1.0) };
+            let first = if self.hastens { 0 } else { RELAXATION };
+            let longest = if self.laid { NEAR } else { 1.0 };
             return self.minimise(model, relative_decrease, [first, RELAXATION], longest, state, work);
         };
         // The method of multipliers: value + multiplier (L − target) + ½ penalty (L − target)².
@@ -319,6 +323,7 @@ impl<'a> Passes<'a> {
             self.note(model.value_of(sums), step)
         })?;
         self.multiplier = improved.tension;
+        self.laid = true;
         self.hastens = relative_decrease > LOOSE;
         model.fitted = self.hastens && improved.left_out + improved.misfit <= FITTED * improved.integral;
         if improved.grows {

@@ -102,6 +102,10 @@ const ZERO_COST: f64 = 1e-3;
 /// A cost below this part of what is natural is rounding: no step can be judged any more.
 pub(super) const NO_COST: f64 = 1e-20;
 
+/// A Newton step that promises less than this part of the objective changes the shape by too little to make another of an
+/// element's minima the least.
+const SETTLED: f64 = 1e-7;
+
 /// A step that brings this part of what it promised need not be helped.
 const KEPT: f64 = 0.9;
 /// Before the first step elements are relaxed until one promises less than this part of the tolerance.
@@ -191,6 +195,8 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         let tight = settings.relative_decrease <= LOOSE;
         let most_polish = if tight { POLISH } else { 0 };
         let mut polish = most_polish;
+        // The objective where other minima were looked for in vain.
+        let mut explored = f64::INFINITY;
         let mut explorations = if explores && tight { MOST_EXPLORATIONS } else { 0 };
         let mut past = [f64::INFINITY; WINDOW];
         loop {
@@ -233,18 +239,27 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             // Newton step tells how far the minimum is: one that ends at the radius says no more than that.
             let little = settings.relative_decrease * (value + ZERO_COST * natural);
             let near = step.predicted <= if step.shift == 0.0 { floor.max(little) } else { floor };
+            let last = near && (step.predicted <= POLISH_FLOOR * floor || polish == 0 || step.shift > 0.0);
+            // A ball that shrank to nothing proves nothing; otherwise there is nothing left to gain.
+            let whole = step.shift == 0.0 || radius.0 > 1e3 * least_radius;
+            // Other minima of the elements are looked for as soon as the shape is known well enough to tell them apart: digits
+            // that were found before would be found in vain.
+            let settled = step.shift == 0.0 && step.predicted <= SETTLED * value;
+            let moved = !(explored - value <= SETTLED * value);
+            if explorations > 0 && moved && (settled || (last && whole)) {
+                explored = value;
+                if self.hop(state, value) {
+                    explorations -= 1;
+                    explored = f64::INFINITY;
+                    polish = most_polish;
+                    radius = Radius(settings.first_radius * root);
+                    shift = 0.0;
+                    value = self.linearise(state);
+                    continue;
+                }
+            }
             if near {
-                if step.predicted <= POLISH_FLOOR * floor || polish == 0 || step.shift > 0.0 {
-                    // A ball that shrank to nothing proves nothing; otherwise there is nothing left to gain.
-                    let whole = step.shift == 0.0 || radius.0 > 1e3 * least_radius;
-                    if whole && explorations > 0 && self.hop(state, value) {
-                        explorations -= 1;
-                        polish = most_polish;
-                        radius = Radius(settings.first_radius * root);
-                        shift = 0.0;
-                        value = self.linearise(state);
-                        continue;
-                    }
+                if last {
                     outcome.status = if whole { Status::Converged } else { Status::Stalled };
                     outcome.linearisations = self.linearisations;
                     return outcome;
@@ -271,9 +286,10 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             let ratio = tried.value.is_finite().then(|| (actual + slack) / (step.predicted + slack));
             let before = radius;
             let accepted = radius.judge(ratio, step.length);
-            if near && !accepted {
-                // Below what costs can tell: the last state stands.
-                (radius, polish) = (before, 0);
+            if near {
+                // Below what costs can tell, a ratio says nothing of the radius; a step that is refused is the last one.
+                radius = before;
+                polish = if accepted { polish } else { 0 };
             }
             outcome.iterations += 1;
             let record = Record {

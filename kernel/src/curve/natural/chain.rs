@@ -19,6 +19,8 @@ const FIXED: f64 = -1.0;
 const LONGEST_STEP: f64 = 0.5;
 /// The longest step of a curvature times its chord.
 const LONGEST_BEND: f64 = 2.0;
+/// The least part of a tension's own change by which one step is divided.
+const LEAST_HOLD: f64 = 0.2;
 /// A curve that grows by this factor may grow without limit.
 const GROWN: f64 = 4.0;
 
@@ -274,6 +276,12 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
         spans.map(|memory| Span::<N>::load(&memory[4..]).integral(self.tables, weigh)).sum()
     }
 
+    /// `∫ θ''² ds`, `∫ θ'² ds` and the length.
+    pub(super) fn sums(&self) -> [f64; 3] {
+        let one = |bend, slope| self.integral(&Weigh { bend, slope, length: 0.0 });
+        [one(1.0, 0.0), one(0.0, 1.0), self.length()]
+    }
+
     /// By how much the functional would sink, about, with more functions.
     pub(super) fn left_out(&self) -> f64 {
         self.left_out
@@ -334,6 +342,11 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
         let unknowns = self.gradient.len();
         let start_length = self.length();
         for _ in 0..effort.iterations {
+            if let Law::Power(power) = law {
+                // The tension that belongs to the curve as it stands: one that lags behind pulls now too much, now too little.
+                let own = self.integral(&Weigh { length: 0.0, ..*weigh });
+                weigh.length = power * own / self.length();
+            }
             let mut gap = None;
             for curvature in [1.0, 0.0] {
                 let Some(found) = self.linearise(weigh, curvature, effort.exact) else { continue };
@@ -445,7 +458,9 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
                     of_value * (along(step) - weigh.length * change) + of_length * change
                 };
                 let (plain, pulled) = (with(self.step, change[0]), with(self.pulled, change[1]));
-                (power * value / length - weigh.length + plain) / (1.0 - pulled)
+                // The denominator is positive where the whole is positive definite. Under a tension that stands a step always
+                // goes down, for the logarithm is concave: a tension that moves hastens it, and only so much.
+                (power * value / length - weigh.length + plain) / (1.0 - pulled).max(LEAST_HOLD)
             }
         };
         if found.is_finite() { found } else { 0.0 }
