@@ -13,7 +13,7 @@ use crate::solve::{
 /// The first pass ends when a step promises to lower the functional by less than this fraction.
 const SHAPING_DECREASE: f64 = 1e-1;
 /// The first steps from elements that run along a known curve may be so long, in natural sizes.
-const NEAR: f64 = 0.3;
+const NEAR: f64 = 0.1;
 /// Elements that exceed the least integral by less than this part of it have no better ones beside them.
 const FITTED: f64 = 1e-6;
 /// How many iterations a curve gets that grows already when its directions alone are solved for.

@@ -6,6 +6,7 @@
 
 use super::problem::packed_len;
 use super::workspace::Indices;
+use crate::basis::lanes::{Lanes, WIDTH};
 use crate::root::sqrt;
 
 /// The shape of an envelope.
@@ -47,8 +48,8 @@ const PIVOT_ROUNDING: f64 = 1e-14;
 const NORM_ROUNDING: f64 = 1e-16;
 /// A negative pivot that is smaller than this part of its matrix entry would spoil the digits of all others.
 const LEAST_NEGATIVE: f64 = 1e-8;
-/// The pivot of a direction without effect.
-const IMMOVABLE: f64 = 1e100;
+/// The inverse pivot of a direction without effect.
+const IMMOVABLE: f64 = 1e-100;
 
 impl Envelope<'_, '_> {
     #[inline]
@@ -59,13 +60,19 @@ impl Envelope<'_, '_> {
         }
     }
 
+    /// Row `r` as its first column and where it starts in the stored entries.
+    #[inline]
+    fn place(&self, r: usize) -> (usize, usize) {
+        match self {
+            Self::Rows { first, start } => (first.get(r), start.get(r)),
+            Self::Full(_) => (0, packed_len(r)),
+        }
+    }
+
     /// Row `r` as its first column and its range in the stored entries.
     #[inline]
     fn row(&self, r: usize) -> (usize, core::ops::Range<usize>) {
-        let (first, start) = match self {
-            Self::Rows { first, start } => (first.get(r), start.get(r)),
-            Self::Full(_) => (0, packed_len(r)),
-        };
+        let (first, start) = self.place(r);
         (first, start..start + (r - first) + 1)
     }
 
@@ -109,7 +116,7 @@ impl Envelope<'_, '_> {
         }
     }
 
-    /// Factors `matrix + shift · I` into `factor`, row by row.
+    /// Factors `matrix + shift · I` into `factor`, row by row. In the diagonal stand the inverse pivots: dividing is slow.
     ///
     /// A pivot that is nothing but rounding, by what was subtracted to get it and by `norm`, the size of the whole
     /// matrix, belongs to a direction in which nothing changes (the parametrisation of a straight span, a motion of
@@ -122,45 +129,13 @@ impl Envelope<'_, '_> {
         allow: Allow,
         factor: &mut [f64],
     ) -> Result<Factored, Indefinite> {
-        let mut negative = None;
-        for r in 0..self.rows() {
-            let (first, range) = self.row(r);
-            let (done, rest) = factor.split_at_mut(range.start);
-            let row = &mut rest[..r - first + 1];
-            row.copy_from_slice(&matrix[range]);
-            for c in first..r {
-                let (c_first, c_range) = self.row(c);
-                let other = &done[c_range];
-                let from = first.max(c_first);
-                let mut sum = dot(&row[from - first..c - first], &other[from - c_first..c - c_first]);
-                if let Some(n) = negative.filter(|n| (from..c).contains(n)) {
-                    sum -= 2.0 * row[n - first] * other[n - c_first];
-                }
-                row[c - first] = (row[c - first] - sum) / other[c - c_first];
-                if negative == Some(c) {
-                    row[c - first] = -row[c - first];
-                }
+        // One loop for each shape: which it is need not be asked for every entry.
+        match self {
+            Self::Rows { first, start } => {
+                factor_by(first.len(), |r| (first.get(r), start.get(r)), matrix, norm, shift, allow, factor)
             }
-            let (entries, diagonal) = row.split_at_mut(r - first);
-            let mut pivot = diagonal[0] + shift - dot(entries, entries);
-            if let Some(n) = negative.filter(|n| (first..r).contains(n)) {
-                pivot += 2.0 * entries[n - first] * entries[n - first];
-            }
-            let noise = PIVOT_ROUNDING * diagonal[0].abs() + NORM_ROUNDING * norm;
-            let may_be_negative = allow == Allow::OneNegative && negative.is_none();
-            diagonal[0] = if pivot > noise {
-                sqrt(pivot)
-            } else if pivot >= -noise {
-                entries.fill(0.0);
-                IMMOVABLE
-            } else if may_be_negative && -pivot > LEAST_NEGATIVE * diagonal[0].abs() {
-                negative = Some(r);
-                sqrt(-pivot)
-            } else {
-                return Err(Indefinite { row: r, pivot });
-            };
+            Self::Full(rows) => factor_by(*rows, |r| (0, packed_len(r)), matrix, norm, shift, allow, factor),
         }
-        Ok(Factored { negative })
     }
 
     /// Solves `matrix · y = x` in place.
@@ -178,7 +153,7 @@ impl Envelope<'_, '_> {
             let (first, range) = self.row(r);
             let row = &factor[range];
             let sum = dot(&row[..r - first], &x[first..r]);
-            x[r] = (x[r] - sum) / row[r - first];
+            x[r] = (x[r] - sum) * row[r - first];
         }
     }
 
@@ -187,7 +162,7 @@ impl Envelope<'_, '_> {
         for r in (0..rows).rev() {
             let (first, range) = self.row(r);
             let row = &factor[range];
-            let value = x[r] / row[r - first];
+            let value = x[r] * row[r - first];
             x[r] = value;
             for (entry, target) in row[..r - first].iter().zip(&mut x[first..r]) {
                 *target -= entry * value;
@@ -208,12 +183,69 @@ impl Envelope<'_, '_> {
     }
 }
 
-/// The inner product, summed in order.
+/// [`Envelope::factor`], where `place` tells of a row its first column and where it starts.
+#[inline(always)]
+fn factor_by(
+    rows: usize,
+    place: impl Fn(usize) -> (usize, usize),
+    matrix: &[f64],
+    norm: f64,
+    shift: f64,
+    allow: Allow,
+    factor: &mut [f64],
+) -> Result<Factored, Indefinite> {
+    let mut negative = None;
+    for r in 0..rows {
+        let (first, start) = place(r);
+        let (done, rest) = factor.split_at_mut(start);
+        let row = &mut rest[..r - first + 1];
+        row.copy_from_slice(&matrix[start..start + row.len()]);
+        for c in first..r {
+            let (c_first, c_start) = place(c);
+            let other = &done[c_start..c_start + (c - c_first) + 1];
+            let from = first.max(c_first);
+            let mut sum = dot(&row[from - first..c - first], &other[from - c_first..c - c_first]);
+            if let Some(n) = negative.filter(|n| (from..c).contains(n)) {
+                sum -= 2.0 * row[n - first] * other[n - c_first];
+            }
+            row[c - first] = (row[c - first] - sum) * other[c - c_first];
+            if negative == Some(c) {
+                row[c - first] = -row[c - first];
+            }
+        }
+        let (entries, diagonal) = row.split_at_mut(r - first);
+        let mut pivot = diagonal[0] + shift - dot(entries, entries);
+        if let Some(n) = negative.filter(|n| (first..r).contains(n)) {
+            pivot += 2.0 * entries[n - first] * entries[n - first];
+        }
+        let noise = PIVOT_ROUNDING * diagonal[0].abs() + NORM_ROUNDING * norm;
+        let may_be_negative = allow == Allow::OneNegative && negative.is_none();
+        diagonal[0] = if pivot > noise {
+            1.0 / sqrt(pivot)
+        } else if pivot >= -noise {
+            entries.fill(0.0);
+            IMMOVABLE
+        } else if may_be_negative && -pivot > LEAST_NEGATIVE * diagonal[0].abs() {
+            negative = Some(r);
+            1.0 / sqrt(-pivot)
+        } else {
+            return Err(Indefinite { row: r, pivot });
+        };
+    }
+    Ok(Factored { negative })
+}
+
+/// The inner product: the entries at even places summed in order and those at odd ones, side by side.
 #[inline]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sum = 0.0;
-    for (x, y) in a.iter().zip(b) {
-        sum += x * y;
+    let ((pairs, rest), (other_pairs, other_rest)) = (a.as_chunks::<WIDTH>(), b.as_chunks::<WIDTH>());
+    let mut sum = Lanes::ZERO;
+    for (x, y) in pairs.iter().zip(other_pairs) {
+        sum += Lanes(*x) * Lanes(*y);
     }
-    sum
+    let mut total = sum.total();
+    for (x, y) in rest.iter().zip(other_rest) {
+        total += x * y;
+    }
+    total
 }

@@ -177,7 +177,7 @@ pub(super) struct Workspace<'a> {
     pub(super) slot_len: usize,
 }
 
-/// Small whole numbers kept in a slice of `f64`, so that a caller hands over one kind of memory. Exact up to 2^53.
+/// Whole numbers kept as the bits of a slice of `f64`, so that a caller hands over one kind of memory: nothing is converted.
 pub(crate) struct Indices<'a>(&'a mut [f64]);
 
 impl<'a> Indices<'a> {
@@ -187,12 +187,12 @@ impl<'a> Indices<'a> {
 
     #[inline]
     pub(crate) fn get(&self, at: usize) -> usize {
-        self.0[at] as usize
+        self.0[at].to_bits() as usize
     }
 
     #[inline]
     pub(crate) fn set(&mut self, at: usize, value: usize) {
-        self.0[at] = value as f64;
+        self.0[at] = f64::from_bits(value as u64);
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -200,7 +200,7 @@ impl<'a> Indices<'a> {
     }
 
     pub(crate) fn fill(&mut self, value: usize) {
-        self.0.fill(value as f64);
+        self.0.fill(f64::from_bits(value as u64));
     }
 }
 
