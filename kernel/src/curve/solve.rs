@@ -1,6 +1,7 @@
 //! From a designer's data to elements: the three calls *how much*, *here it is*, *solve*.
 
 use super::accuracy::{Aim, Level, divide, divide_true};
+use super::anchors::anchors;
 use super::check::{check, check_elements, check_length, check_obstacles};
 use super::contacts::{Touching, keep_clear, most_contacts};
 use super::element::Element;
@@ -196,6 +197,8 @@ fn model<'a, const D: usize>(curve: &Curve<'a>, options: &Options, place: &Place
         contacts: &[],
         gauge: 0.0,
         guarded: true,
+        anchors: anchors(curve, options),
+        slides: true,
         fitted: false,
         natural_cost: 0.0,
         start_length: 0.0,
