@@ -70,7 +70,8 @@ fn look_over(curve: &Curve<'_>, options: &Options) -> Result<Place, CurveError> 
 /// as far as it reaches. Fixed positions and tangent directions are kept exactly; planar data give elements exactly in their
 /// plane where that is parallel to a coordinate plane, else to rounding.
 ///
-/// With a reference shape the search starts from that shape.
+/// With a reference shape the search starts from that shape. A curve of which nothing is fixed, and whose functional does not look
+/// at size, stays about where its start values are.
 ///
 /// # Errors
 /// Whatever is wrong with data, options or memory, found before any work; `elements` is untouched then.
