@@ -3,13 +3,13 @@
 # make test-clients  the same with heavy real clients (LinuxCNC's interpreter)
 # make lint          formatting, clippy, documentation
 # make header        writes include/minvar.h anew
-# make table         Appendix A of the thesis: published, ours, Ceres
+# make table         Appendix A of the thesis: published, ours, Ceres; iterations from the data alone
 # make random        20,000 random problems, judged independently; libspiro and OpenCASCADE beside
 # make bench         minvar against Ceres, libspiro and OpenCASCADE, as ratios in one run (some minutes)
 # make profile       instructions an element of every set of Appendix A, and where they go
 # make memory        bytes of workspace, stack and code
 # make pictures      draws docs/*.svg anew
-# make figures       draws the figures of thesis chapter 4 into docs/figures, with Table 4.1 computed anew
+# make figures       draws the figures of thesis chapter 4 into docs/figures, with Table 4.1 and the iterations
 # make help          this text
 #
 # Every target installs what it needs from Debian's packages, if it may.

@@ -85,6 +85,10 @@ where
         3 * self.widest()
     }
 
+    fn most_loose_dofs(&self) -> usize {
+        if self.model.most_loose_dofs() > 0 { 5 * self.widest() } else { 0 }
+    }
+
     fn envelope_bound(&self) -> usize {
         let unknowns: usize = (0..self.blocks()).map(|block| self.dofs(block)).sum();
         // As in a chain without obstacles: over one element and one node at most, and in a ring back to the first node.

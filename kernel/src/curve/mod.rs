@@ -35,6 +35,7 @@
 //! ```
 
 mod accuracy;
+mod anchors;
 mod check;
 mod contacts;
 pub mod convert;

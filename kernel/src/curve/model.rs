@@ -117,6 +117,10 @@ pub(super) struct Model<'a, const D: usize> {
     /// Whether a curve that turns by more than a right angle between two points of the rule is outside the domain:
     /// it would have a cusp there that the rule does not see.
     pub(super) guarded: bool,
+    /// The two joints that hold a curve of which nothing is fixed, see [`super::anchors`].
+    pub(super) anchors: Option<[usize; 2]>,
+    /// Whether that curve's joints slide along it.
+    pub(super) slides: bool,
     /// Whether the elements have been laid along a curve that is known: no others are much better.
     pub(super) fitted: bool,
     /// The natural size of the integral, see [`Problem::natural_cost`].
@@ -240,6 +244,17 @@ impl<const D: usize> Model<'_, D> {
         }
     }
 
+    fn is_anchor(&self, node: usize) -> bool {
+        self.anchors
+            .is_some_and(|anchors| self.joint_number(node).is_some_and(|joint| anchors.contains(&joint)))
+    }
+
+    /// Whether a node has an element on either side and shares all with both, so that it may slide along the curve.
+    fn is_inside(&self, node: usize) -> bool {
+        let inside = self.curve.closed || (node > 0 && node < self.element_count());
+        inside && self.continuity(node) == Continuity::G2
+    }
+
     /// What is free at a side of a node; side 0 arrives, side 1 leaves.
     fn freedom(&self, node: usize, side: usize) -> Freedom {
         let Some(joint) = self.joint(node) else {
@@ -253,9 +268,12 @@ impl<const D: usize> Model<'_, D> {
             // A plane that holds the plane of a planar curve leaves it free.
             Given::ON_PLANE if D == 3 => PointFreedom::Plane,
             Given::ON_PLANE if self.place.slide(joint, 0).is_some() => PointFreedom::Line,
+            _ if !self.slides && self.is_anchor(node) => PointFreedom::Fixed,
+            _ if !self.slides && self.is_inside(node) => PointFreedom::Across,
             _ => PointFreedom::Free,
         };
-        let tangent = joint.tangent[side].given != Given::FIXED;
+        let stands = !self.slides && self.is_anchor(node);
+        let tangent = joint.tangent[side].given != Given::FIXED && !stands;
         let fixed = &joint.curvature[side];
         let kept = fixed.given == Given::FIXED;
         let curvature = if !kept && fixed.given != Given::SIZE {
@@ -880,6 +898,32 @@ where
             turns[0].apply(first);
             turns[1].apply(second);
         }
+    }
+
+    fn is_loose(&self, block: usize) -> bool {
+        if block >= self.node_count() || self.joint(block).is_none() || !self.is_inside(block) {
+            return false;
+        }
+        // What torsion asks of a joint its own elements cannot tell.
+        let Freedom { point, tangent, curvature } = self.freedom(block, 0);
+        let free = point == PointFreedom::Free && tangent && curvature == CurvatureFreedom::Free;
+        free && self.space.is_none()
+    }
+
+    fn most_loose_dofs(&self) -> usize {
+        let nodes = self.node_count();
+        let mut most = 0;
+        for node in (0..nodes).filter(|&node| self.is_loose(node)) {
+            // The elements on either side, and the end of an open curve behind one of them.
+            let before = if node > 0 { node - 1 } else { self.element_count() - 1 };
+            let around = [node, nodes + before, nodes + node, before, self.node(node, 1)];
+            most = most.max(around.into_iter().map(|block| self.dofs(block)).sum());
+        }
+        most
+    }
+
+    fn held(&self, block: usize) -> usize {
+        if self.slides && block < self.node_count() && self.is_anchor(block) { D } else { 0 }
     }
 
     fn variants(&self) -> usize {

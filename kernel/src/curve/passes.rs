@@ -12,8 +12,10 @@ use crate::solve::{
 
 /// The first pass ends when a step promises to lower the functional by less than this fraction.
 const SHAPING_DECREASE: f64 = 1e-1;
-/// The first steps from elements that run along a known curve may be so long, in natural sizes.
+/// The first steps from elements that run along a known curve, or have its shape already, may be so long, in natural sizes.
 const NEAR: f64 = 0.1;
+/// Elements that exceed the least integral by more than this part of it do not run along their curve: the way may be far.
+const LAID: f64 = 1e-2;
 /// Elements that exceed the least integral by less than this part of it have no better ones beside them.
 const FITTED: f64 = 1e-6;
 /// How many iterations a curve gets that grows already when its directions alone are solved for.
@@ -67,7 +69,7 @@ pub(super) struct Passes<'a> {
     /// Whether the observer asked to stop.
     cancelled: bool,
     hurries: bool,
-    /// Whether elements have been laid along a known curve.
+    /// Whether elements run along a known curve.
     laid: bool,
     /// Whether such elements are taken as they are as far as possible.
     hastens: bool,
@@ -140,15 +142,17 @@ impl<'a> Passes<'a> {
         let [start_cost, _] = guard(model, state);
         let natural = if start_cost > 0.0 { model.natural_cost.min(start_cost) } else { model.natural_cost };
         model.gauge = natural / model.element_count() as f64;
+        model.slides = model.anchors.is_none();
         let outcome = self.minimise(model, SHAPING_DECREASE, [0, 0], 1.0, state, work)?;
-        model.gauge = 0.0;
+        (model.gauge, model.slides) = (0.0, true);
         if matches!(outcome.status, Status::Cancelled | Status::Unbounded) {
             return Ok(outcome);
         }
         self.finish(model, relative_decrease, state, work)
     }
 
-    /// The last pass, from a state that has the right shape already. A given length is met here.
+    /// The last pass, from a state that has the right shape already. A given length is met here. A curve of which nothing is fixed
+    /// first gets its shape, then its joints slide along it.
     pub(super) fn finish<const D: usize>(
         &mut self,
         model: &mut Model<'_, D>,
@@ -163,18 +167,22 @@ impl<'a> Passes<'a> {
             return self.finish_in_space(model, relative_decrease, state, work);
         }
         guard(model, state);
-        if !model.chooses_points {
+        let holds = model.anchors.is_some();
+        if !model.chooses_points && !holds {
             return self.finish_with(model, relative_decrease, state, work);
         }
-        model.points = WORKING_POINTS;
+        let points = if model.chooses_points { MAX_POINTS } else { model.points };
+        model.points = points.min(WORKING_POINTS);
+        model.slides = !holds;
         let outcome = self.finish_with(model, relative_decrease.max(WORKING_DECREASE), state, work)?;
-        model.points = MAX_POINTS;
+        model.slides = true;
+        model.points = points;
         let sums = guard(model, state);
         let value = model.couple(sums).value;
         let agrees =
             (value - outcome.value).abs() <= relative_decrease * (value + 1e-9 * model.natural_cost());
         let stopped = matches!(outcome.status, Status::Cancelled | Status::Unbounded);
-        if stopped || (relative_decrease > LOOSE && agrees) {
+        if stopped || (relative_decrease > LOOSE && agrees && !holds) {
             return Ok(Outcome { value, ..outcome });
         }
         self.finish_with(model, relative_decrease, state, work)
@@ -252,7 +260,8 @@ impl<'a> Passes<'a> {
     {
         let Some(target) = self.length else {
             let first = if self.hastens { 0 } else { RELAXATION };
-            let longest = if self.laid { NEAR } else { 1.0 };
+            let near = self.laid || (model.slides && model.anchors.is_some());
+            let longest = if near { NEAR } else { 1.0 };
             return self.minimise(model, relative_decrease, [first, RELAXATION], longest, state, work);
         };
         // The method of multipliers: value + multiplier (L − target) + ½ penalty (L − target)².
@@ -323,7 +332,7 @@ impl<'a> Passes<'a> {
             self.note(model.value_of(sums), step)
         })?;
         self.multiplier = improved.tension;
-        self.laid = true;
+        self.laid = improved.left_out + improved.misfit <= LAID * improved.integral;
         self.hastens = relative_decrease > LOOSE;
         model.fitted = self.hastens && improved.left_out + improved.misfit <= FITTED * improved.integral;
         if improved.grows {
@@ -418,6 +427,7 @@ impl<'a> Passes<'a> {
             relaxation,
             spares_relaxation: self.hastens,
             first_relaxation,
+            explores: relative_decrease <= LOOSE || !model.slides,
             first_radius,
         };
         let outcome = solve::minimise(model, &settings, &InOrder, state, work, &mut [], self)?;

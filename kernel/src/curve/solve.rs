@@ -1,6 +1,7 @@
 //! From a designer's data to elements: the three calls *how much*, *here it is*, *solve*.
 
 use super::accuracy::{Aim, Level, divide, divide_true};
+use super::anchors::anchors;
 use super::check::{check, check_elements, check_length, check_obstacles};
 use super::contacts::{Touching, keep_clear, most_contacts};
 use super::element::Element;
@@ -69,7 +70,8 @@ fn look_over(curve: &Curve<'_>, options: &Options) -> Result<Place, CurveError> 
 /// as far as it reaches. Fixed positions and tangent directions are kept exactly; planar data give elements exactly in their
 /// plane where that is parallel to a coordinate plane, else to rounding.
 ///
-/// With a reference shape the search starts from that shape.
+/// With a reference shape the search starts from that shape. A curve of which nothing is fixed, and whose functional does not look
+/// at size, stays about where its start values are.
 ///
 /// # Errors
 /// Whatever is wrong with data, options or memory, found before any work; `elements` is untouched then.
@@ -196,6 +198,8 @@ fn model<'a, const D: usize>(curve: &Curve<'a>, options: &Options, place: &Place
         contacts: &[],
         gauge: 0.0,
         guarded: true,
+        anchors: anchors(curve, options),
+        slides: true,
         fitted: false,
         natural_cost: 0.0,
         start_length: 0.0,

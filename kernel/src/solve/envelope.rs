@@ -83,6 +83,19 @@ impl Envelope<'_, '_> {
         matrix[range.start + c - first] += value;
     }
 
+    /// Makes a row, and its column, that of an unknown which stands alone.
+    pub(crate) fn isolate(&self, matrix: &mut [f64], r: usize) {
+        let (_, range) = self.row(r);
+        matrix[range.clone()].fill(0.0);
+        matrix[range.end - 1] = 1.0;
+        for below in r + 1..self.rows() {
+            let (first, range) = self.row(below);
+            if first <= r {
+                matrix[range.start + r - first] = 0.0;
+            }
+        }
+    }
+
     /// The largest absolute row sum: a bound on the matrix's eigenvalues (Gershgorin). `sums` is scratch.
     pub(crate) fn norm(&self, matrix: &[f64], sums: &mut [f64]) -> f64 {
         sums.fill(0.0);

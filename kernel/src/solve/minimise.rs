@@ -5,10 +5,10 @@ use super::executor::Executor;
 use super::ordering::order_blocks;
 use super::problem::{BlockList, Coupled, Problem, packed, packed_len};
 use super::rank_two::RankTwo;
-use super::relax;
 use super::report::{Control, Observer, Outcome, Record, Status};
 use super::trust_region::{self, Radius, Vectors};
 use super::workspace::{Indices, Layout, Workspace, WorkspaceTooSmall};
+use super::{patch, relax};
 use crate::root::sqrt;
 
 /// How to iterate.
@@ -27,6 +27,8 @@ pub struct Settings {
     pub spares_relaxation: bool,
     /// How many such steps each element takes before the first step.
     pub first_relaxation: usize,
+    /// Whether other minima of the elements' own unknowns are looked for, see [`Problem::variants`].
+    pub explores: bool,
     /// The first radius of the trust region, in natural sizes an element.
     pub first_radius: f64,
 }
@@ -39,6 +41,7 @@ impl Settings {
         relaxation: 0,
         spares_relaxation: false,
         first_relaxation: 0,
+        explores: true,
         first_radius: 1.0,
     };
 }
@@ -82,8 +85,9 @@ pub fn minimise<P: Problem + ?Sized>(
         return Err(WorkspaceTooSmall { needed: layout.len() + 2 * (entries - layout.envelope), given });
     }
     let coupled = Coupled::plain([f64::INFINITY; 2]);
-    let mut run =
-        Run { problem, executor, work, relaxation: settings.relaxation, linearisations: 0, coupled };
+    let loosens = settings.relaxation > 0 && problem.most_loose_dofs() > 0;
+    let relaxation = settings.relaxation;
+    let mut run = Run { problem, executor, work, relaxation, loosens, linearisations: 0, coupled };
     Ok(run.iterate(settings, state, records, observer))
 }
 
@@ -110,6 +114,10 @@ const SETTLED: f64 = 1e-7;
 const KEPT: f64 = 0.9;
 /// Before the first step elements are relaxed until one promises less than this part of the tolerance.
 const ENOUGH: f64 = 0.1;
+/// Before the first step loose blocks are relaxed one after the other, so many times at most, until once all round lowers the
+/// objective by less than so many tolerances.
+const MOST_SWEEPS: usize = 8;
+const SWEPT: f64 = 1e3;
 /// How often other starts of the elements' own unknowns may lead to a better minimum.
 const MOST_EXPLORATIONS: usize = 3;
 /// How many steps every element takes from each of its starts.
@@ -151,6 +159,8 @@ struct Run<'a, P: ?Sized> {
     executor: &'a dyn Executor,
     work: Workspace<'a>,
     relaxation: usize,
+    /// Whether loose blocks are relaxed too.
+    loosens: bool,
     linearisations: usize,
     /// The objective at the state last linearised.
     coupled: Coupled,
@@ -165,7 +175,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         observer: &mut dyn Observer,
     ) -> Outcome {
         let natural = self.problem.natural_cost();
-        let explores = self.relaxation > 0 && self.problem.variants() > 0;
+        let explores = settings.explores && self.relaxation > 0 && self.problem.variants() > 0;
         self.work.trial.copy_from_slice(state);
         self.coupled = self.cost();
         if settings.first_relaxation > 0 {
@@ -173,8 +183,19 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                 / self.problem.elements().max(1) as f64;
             self.linearisations +=
                 relax::relax(self.problem, &mut self.work, settings.first_relaxation, enough);
-            state.copy_from_slice(self.work.trial);
             self.coupled = self.cost();
+            let mut sweeps = if self.loosens { MOST_SWEEPS } else { 0 };
+            while sweeps > 0 {
+                sweeps -= 1;
+                let before = self.coupled.value;
+                self.linearisations +=
+                    patch::relax(self.problem, &mut self.work, settings.first_relaxation, enough);
+                self.coupled = self.cost();
+                if before - self.coupled.value <= SWEPT * settings.relative_decrease * before {
+                    sweeps = 0;
+                }
+            }
+            state.copy_from_slice(self.work.trial);
         }
         let mut value = self.linearise(state);
         let mut outcome = Outcome {
@@ -197,7 +218,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         let mut polish = most_polish;
         // The objective where other minima were looked for in vain.
         let mut explored = f64::INFINITY;
-        let mut explorations = if explores && tight { MOST_EXPLORATIONS } else { 0 };
+        let mut explorations = if explores { MOST_EXPLORATIONS } else { 0 };
         let mut past = [f64::INFINITY; WINDOW];
         loop {
             let gradient = self.work.gradient.iter().fold(0.0f64, |most, g| most.max(g.abs()));
@@ -355,6 +376,9 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         }
         let enough = 1e-3 * predicted / self.problem.elements() as f64;
         self.linearisations += relax::relax(self.problem, &mut self.work, self.relaxation, enough);
+        if self.loosens {
+            self.linearisations += patch::relax(self.problem, &mut self.work, self.relaxation, enough);
+        }
         self.cost()
     }
 
@@ -459,6 +483,16 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                 }
             }
             at += count;
+        }
+        // What the whole leaves in its place stands alone.
+        for block in 0..problem.blocks() {
+            for row in offset.get(block)..offset.get(block) + problem.held(block) {
+                envelope.isolate(matrix, row);
+                gradient[row] = 0.0;
+                if coupled {
+                    second_gradient[row] = 0.0;
+                }
+            }
         }
         for (own, (all, second)) in first_gradient.iter_mut().zip(gradient.iter().zip(second_gradient.iter()))
         {

@@ -16,6 +16,7 @@ mod envelope;
 mod executor;
 mod minimise;
 mod ordering;
+mod patch;
 mod problem;
 mod rank_two;
 mod relax;

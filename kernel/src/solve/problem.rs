@@ -148,6 +148,26 @@ pub trait Problem: Sync {
     /// Moves a block from `from` by `step` in its tangent space. `from` and `to` are the block's own ranges.
     fn retract(&self, block: usize, from: &[f64], step: &[f64], to: &mut [f64]);
 
+    /// Whether a block may move far along a curved valley at hardly any cost, as a point does that slides along a curve: it is
+    /// relaxed together with what its elements share with no other block.
+    fn is_loose(&self, block: usize) -> bool {
+        let _ = block;
+        false
+    }
+
+    /// A bound on the number of unknowns of a loose block together with all that its elements share with no other block; 0
+    /// where nothing is loose.
+    fn most_loose_dofs(&self) -> usize {
+        0
+    }
+
+    /// How many of a block's first unknowns no step of the whole moves, though its own relaxation does: those that hold a shape
+    /// in its place of which nothing is fixed.
+    fn held(&self, block: usize) -> usize {
+        let _ = block;
+        0
+    }
+
     /// How many other starts an element has for the unknowns that it shares with none, beside the one it stands at.
     /// Where those have several minima, the solver tries all once and goes on from the best.
     fn variants(&self) -> usize {

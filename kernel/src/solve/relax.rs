@@ -12,7 +12,7 @@ use super::trust_region::{self, Radius, Vectors};
 use super::workspace::{Indices, Workspace};
 
 /// The first radius of an element's own trust region, in natural sizes.
-const FIRST_RADIUS: f64 = 0.5;
+pub(super) const FIRST_RADIUS: f64 = 0.5;
 
 /// Takes up to `steps` steps in every element of the trial state, one after the other, until a step promises to lower the
 /// objective by less than `enough`. `work.spare` is scratch. Returns how often an element was linearised.
@@ -32,7 +32,7 @@ pub(super) fn relax<P: Problem + ?Sized>(
 }
 
 /// The sums over all elements, of a coupled problem: an element by itself is judged by the objective as a whole.
-fn totals<P: Problem + ?Sized>(problem: &P, state: &[f64]) -> [f64; 2] {
+pub(super) fn totals<P: Problem + ?Sized>(problem: &P, state: &[f64]) -> [f64; 2] {
     let mut totals = [0.0; 2];
     if problem.is_coupled() {
         for element in 0..problem.elements() {
@@ -100,7 +100,7 @@ fn objective<P: Problem + ?Sized>(problem: &P, rest: [f64; 2], own: [f64; 2]) ->
 }
 
 /// Whether a block belongs to one element alone.
-fn is_private(starts: &Indices<'_>, block: usize) -> bool {
+pub(super) fn is_private(starts: &Indices<'_>, block: usize) -> bool {
     starts.get(block + 1) - starts.get(block) == 1
 }
 

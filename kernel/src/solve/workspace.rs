@@ -45,7 +45,7 @@ impl Layout {
             state: problem.state_len(),
             slot: 2 + (1 + usize::from(coupled)) * local + packed_len(local),
             slots: width.max(1),
-            local,
+            local: local.max(problem.most_loose_dofs()),
             coupled: if coupled { unknowns } else { 0 },
         }
     }

@@ -1,9 +1,11 @@
 //! Prints Appendix A solved: the published coefficients, minvar's and the reference's, all measured by the same
-//! independent quadrature, with as many elements a span as the published curve. `make table`.
+//! independent quadrature, with as many elements a span as the published curve; then the iterations from the data alone. `make
+//! table`.
 
 use minvar_tests::appendix::figures;
 use minvar_tests::ceres::{Functional, Measure, evaluate};
 use minvar_tests::compare::{SETS, ours, reference, rows};
+use minvar_tests::iterations;
 
 fn print(name: &str, who: &str, work: &str, value: f64, found: &Measure) {
     println!(
@@ -43,4 +45,5 @@ fn main() {
             }
         }
     }
+    print!("\n{}", iterations::table());
 }
