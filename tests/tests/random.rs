@@ -83,6 +83,7 @@ fn what_was_broken_once_is_kept() {
         (14_757, Functional::MVC, Check::Curvature),
         // Far from the origin for its size: what rounding of positions does to figures is not what it does to a quadrature.
         (16_597, Functional(3), Check::Figures),
+        (19_473, Functional(3), Check::Figures),
     ] {
         let found = run(1, index, &Options { functional, ..Options::DEFAULT }, Images::None).findings;
         assert!(!found.beyond(check), "{index} {functional:?}: {check:?} {:?}", found.of(check));
