@@ -15,6 +15,7 @@ mod trace;
 use arguments::{Arguments, Command, CurveArguments, is_stdin};
 use clap::Parser;
 use constraints::{Fault, Reading, Specification};
+use minvar::curve::TRUSTED;
 use minvar::solve::Status;
 use output::Target;
 use picture::{Mark, Picture, figure};
@@ -107,8 +108,6 @@ fn curve(arguments: &CurveArguments) -> Result<Status, Failure> {
     Ok(solution.status)
 }
 
-/// The functional is trusted if a finer quadrature confirms it to this fraction.
-const TRUSTED: f64 = 1e-4;
 /// A functional below this, in the curve's length, is nothing.
 const NOTHING: f64 = 1e-12;
 

@@ -82,8 +82,8 @@ pub(crate) unsafe fn elements_of<'a>(
     unsafe { array(elements.cast::<Element>(), count, "elements") }
 }
 
-/// Measures a chain of `count` elements. Length, V and E are sums over the elements by a 32-point rule: what happens
-/// between two of them (a jump of curvature at a G1 joint) does not count.
+/// Measures a chain of `count` elements. Length, V and E are sums over the elements by 32-point rules, V and E by as
+/// many of them as it takes: what happens between two elements (a jump of curvature at a G1 joint) does not count.
 ///
 /// Errors: MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_IRREGULAR.
 #[unsafe(no_mangle)]

@@ -116,6 +116,28 @@ fn an_energy_does_not_hide_in_an_element_that_nearly_stops() {
     }
 }
 
+/// Nearly a whole turn around, with an end that looks a little aside: such data grow at first, and get few iterations then.
+#[test]
+fn the_iteration_limit_is_named_only_where_it_was_reached() {
+    for gap in [0.05f64, 0.02, 0.01] {
+        let end = |at: f64, towards: f64| {
+            Joint::at([libm::cos(at), libm::sin(at), 0.0]).with_tangent(Quantity::fixed([
+                -libm::sin(towards),
+                libm::cos(towards),
+                0.0,
+            ]))
+        };
+        let last = std::f64::consts::TAU - 0.5 * gap;
+        let joints = [end(0.5 * gap, 0.5 * gap), end(last, last + 0.02)];
+        for elements_per_span in [1, 2, 4, 8] {
+            let options = Options { elements_per_span, ..Options::DEFAULT };
+            let (report, _) = solve_curve(&joints, false, &options).expect("good data");
+            let named = report.status == Status::IterationLimit;
+            assert!(!named || report.iterations == 500, "{gap}, {elements_per_span}: {report:?}");
+        }
+    }
+}
+
 #[test]
 fn a_limit_on_the_way_to_many_elements_loses_nothing() {
     let joints = points(&CASE);

@@ -5,7 +5,7 @@ use minvar::solve::Status;
 use minvar_tests::curves::{functional_value, length, norm, solve_curve, times};
 use minvar_tests::random::finding::{Check, Findings};
 use minvar_tests::random::judge::judge;
-use minvar_tests::random::measured::{measure, name};
+use minvar_tests::random::measured::{FUNCTIONALS, measure, name};
 use minvar_tests::random::problem::Problem;
 use minvar_tests::random::run::{Images, Outcome, run};
 use std::sync::OnceLock;
@@ -13,13 +13,13 @@ use std::sync::OnceLock;
 const SEED: u64 = 2;
 const COUNT: u64 = 150;
 
-/// Every problem with both functionals, each in one image.
+/// Every problem with every functional that has a name, each in one image.
 fn outcomes() -> &'static [Outcome] {
     static OUTCOMES: OnceLock<Vec<Outcome>> = OnceLock::new();
     OUTCOMES.get_or_init(|| {
         (0..COUNT)
             .flat_map(|index| {
-                [Functional::MVC, Functional::MEC].map(|functional| {
+                FUNCTIONALS.map(|(_, functional)| {
                     run(SEED, index, &Options { functional, ..Options::DEFAULT }, Images::One)
                 })
             })
@@ -48,21 +48,9 @@ fn sound() -> (Problem, Report, Vec<Element>) {
 
 fn findings(problem: &Problem, report: &Report, elements: &[Element]) -> Findings {
     let mut findings = Findings::default();
-    judge(problem, Functional::MVC, report, elements, &mut findings);
+    judge(problem, &Options::DEFAULT, report, elements, &mut findings);
     findings
 }
-
-/// Promises that are not kept everywhere, and the share of results that may break them: fixed tangents in an oblique plane of
-/// which the data hardly tell the direction; figures of curves that bend too sharply for their elements; loops without end
-/// that the rest of the curve outweighs. To be emptied.
-const NOT_YET: [(Check, f64); 6] = [
-    (Check::Tangent, 0.03),
-    (Check::Length, 0.02),
-    (Check::Figures, 0.03),
-    (Check::Value, 0.03),
-    (Check::Grown, 0.01),
-    (Check::MoveStatus, 0.01),
-];
 
 #[test]
 fn no_promise_is_broken() {
@@ -72,8 +60,33 @@ fn no_promise_is_broken() {
             .filter(|outcome| outcome.findings.beyond(check))
             .map(|o| format!("--seed {SEED} --only {} --functional {}", o.index, name(o.functional)))
             .collect();
-        let share = NOT_YET.iter().find(|(other, _)| *other == check).map_or(0.0, |(_, share)| *share);
-        assert!(broken.len() as f64 <= share * outcomes().len() as f64, "{check:?}: {broken:#?}");
+        assert!(broken.is_empty(), "{check:?}: {broken:#?}");
+    }
+}
+
+/// Problems of seed 1 that broke a promise once, one of a kind.
+#[test]
+fn what_was_broken_once_is_kept() {
+    for (index, functional, check) in [
+        // The variation of an energy curve, whose curvature rises to nothing like its bending, was measured too coarsely.
+        (15_538, Functional::MEC, Check::Figures),
+        (1_011, Functional::MEC, Check::Figures),
+        // So was its length.
+        (15_550, Functional::MVC, Check::Length),
+        // Called converged by a measure that was as wrong as what was minimised.
+        (5_510, Functional(3), Check::Value),
+        // More than fifty times as long as its data, the start being long already.
+        (16_508, Functional::MVC, Check::Grown),
+        // Fast at its ends, but not long.
+        (473, Functional::MVC, Check::NotGrown),
+        // A curvature that bends by less than rounding.
+        (14_757, Functional::MVC, Check::Curvature),
+        // Far from the origin for its size: what rounding of positions does to figures is not what it does to a quadrature.
+        (16_597, Functional(3), Check::Figures),
+        (19_473, Functional(3), Check::Figures),
+    ] {
+        let found = run(1, index, &Options { functional, ..Options::DEFAULT }, Images::None).findings;
+        assert!(!found.beyond(check), "{index} {functional:?}: {check:?} {:?}", found.of(check));
     }
 }
 
@@ -139,8 +152,11 @@ fn the_judge_sees_every_fault() {
         change(&mut report);
         findings(&problem, &report, &elements)
     };
-    assert!(lied(&|r| r.value *= 1.00001).beyond(Check::Value));
+    assert!(lied(&|r| r.value *= 1.001).beyond(Check::Value));
+    assert!(lied(&|r| r.fine_value *= 1.00001).beyond(Check::FineValue));
+    assert!(lied(&|r| r.variation *= 1.00001).beyond(Check::Figures));
     assert!(lied(&|r| r.length *= 1.0001).beyond(Check::Length));
     assert!(lied(&|r| r.status = Status::Cancelled).beyond(Check::Status));
+    assert!(lied(&|r| r.status = Status::IterationLimit).beyond(Check::Status));
     assert!(lied(&|r| r.status = Status::Unbounded).beyond(Check::NotGrown));
 }

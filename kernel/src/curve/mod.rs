@@ -73,5 +73,5 @@ pub use minima::{minima, minima_as};
 pub use obstacle::{Obstacle, Side};
 pub use options::Options;
 pub use region::Region;
-pub use report::Report;
+pub use report::{FARTHEST, Report, SHOWN_GROWTH, TRUSTED};
 pub use solve::{elements_len, solve, update, workspace_len};

@@ -2,7 +2,7 @@
 
 use super::element::Element;
 use super::fairness::{Density, Shape};
-use super::figures::{Figures, halves};
+use super::figures::Figures;
 use super::joint::Given;
 use super::model::Model;
 use super::options::Options;
@@ -29,8 +29,9 @@ pub struct Report {
     pub error: f64,
     /// The functional's value by the rule that was minimised with.
     pub value: f64,
-    /// The functional's value of the resulting elements by a finer rule, 32 points on each half. Where it differs from
-    /// `value` by more than rounding, the curve is too wild for its elements: take more of them.
+    /// The functional's value of the resulting elements by a finer rule: 32 points on each half, and on the halves of
+    /// that wherever they do not settle it; to 1e-6. A converged curve's differs from `value` by no more than [`TRUSTED`]
+    /// of it; where by much more than rounding, the curve is wild for its elements: take more of them.
     pub fine_value: f64,
     /// The length `L`.
     pub length: f64,
@@ -54,11 +55,9 @@ where
 {
     let mut figures = Figures::default();
     (0..model.element_count()).for_each(|element| {
-        let rows = model.rows(element, state);
-        figures.add(&rows);
-        if let Some(space) = &model.space {
-            figures.space += halves(&rows).map(|half| space.value(&half, MAX_POINTS)).iter().sum::<f64>();
-        }
+        figures.add(&model.rows(element, state), |piece| {
+            model.space.as_ref().map_or(0.0, |space| space.value(piece, MAX_POINTS))
+        });
     });
     figures
 }
@@ -93,9 +92,15 @@ where
     let mut report = report(model, &outcome, elements, &figures, options);
     // Speeds alone tell little where a curve went wrong.
     let growth = model.rough_length(state).max(figures.length) / model.start_length;
+    // Speeds grow, and so does a curve whose start was short: only its own length shows that a curve goes far.
+    let reach = figures.length / data_length(model);
+    let lost = if reach >= SHOWN_GROWTH { Status::Unbounded } else { Status::Stalled };
     let gave_up = matches!(report.status, Status::IterationLimit | Status::Stalled);
-    if gave_up && growth > if passes.hurries() { GROWS } else { LONG_GROWTH } {
+    if gave_up && reach >= SHOWN_GROWTH && growth > if passes.hurries() { GROWS } else { LONG_GROWTH } {
         report.status = Status::Unbounded;
+    }
+    if report.status == Status::Unbounded {
+        report.status = lost;
     }
     if report.status == Status::Converged {
         let regular = figures.irregular == 0;
@@ -105,11 +110,18 @@ where
         let grown = growth > SUSPECT_GROWTH;
         if !(regular && trusted) {
             // What was minimised is not what the elements are: no minimum was found.
-            report.status = if grown { Status::Unbounded } else { Status::Stalled };
-        } else if growth > GREAT_GROWTH || (grown && !outcome.decrement.is_finite()) {
+            report.status = if grown { lost } else { Status::Stalled };
+        } else if growth > FARTHEST
+            || (grown && !outcome.decrement.is_finite())
+            || (reach > FARTHEST && options.length == 0.0)
+        {
             // A loop on its way to infinity costs next to nothing beside the rest of the curve.
-            report.status = Status::Unbounded;
+            report.status = lost;
         }
+    }
+    if report.status == Status::IterationLimit && report.iterations < options.max_iterations as usize {
+        // A curve that seemed to grow was given fewer iterations than the caller allows.
+        report.status = Status::Stalled;
     }
     report
 }
@@ -123,8 +135,14 @@ pub(super) fn functional_scale(options: &Options, unit: f64) -> f64 {
     }
 }
 
-/// How far a finer quadrature may be off, as a fraction of the functional.
-const TRUSTED: f64 = 1e-4;
+/// How far `value` and `fine_value` of a converged curve may be apart, as a fraction of the functional. With one element a
+/// span the elements themselves exceed the true minimum by more than that wherever a quadrature is off by so much.
+pub const TRUSTED: f64 = 1e-4;
+/// No curve is called converged that is so many times as long as the polygon through its given positions, unless its
+/// length is given: by then a loop is on its way to infinity, and what stops it are its elements.
+pub const FARTHEST: f64 = 50.0;
+/// No curve is called unbounded before it is so many times as long as that polygon.
+pub const SHOWN_GROWTH: f64 = 5.0;
 /// A functional below this part of what is natural for the size is nothing.
 pub(super) const NOTHING: f64 = 1e-9;
 /// A curve that is wrong, and grew by more than this from its start, was on its way to infinity.
@@ -133,8 +151,24 @@ const SUSPECT_GROWTH: f64 = 10.0;
 const LONG_GROWTH: f64 = 5.0;
 /// How much a curve must have grown that grew already when its directions alone were solved for, and ends in no minimum.
 const GROWS: f64 = 2.0;
-/// No curve with a minimum grows by more than this.
-const GREAT_GROWTH: f64 = 50.0;
+
+/// The length of the polygon through the given positions, in the local unit; the start's where there is none.
+fn data_length<const D: usize>(model: &Model<'_, D>) -> f64 {
+    let mut points = model
+        .curve
+        .joints
+        .iter()
+        .filter(|joint| joint.position.given != Given::FREE)
+        .map(|joint| model.place.local_point(&joint.position.value));
+    let Some(first) = points.next() else { return model.start_length };
+    let (mut last, mut sum) = (first, 0.0);
+    for point in points.chain(model.curve.closed.then_some(first)) {
+        let chord = point - last;
+        sum += libm::sqrt(chord.dot(&chord));
+        last = point;
+    }
+    if sum > 0.0 { sum } else { model.start_length }
+}
 
 /// An element in the caller's system, fixed positions to the last bit.
 fn world_element<const D: usize>(model: &Model<'_, D>, index: usize, state: &[f64]) -> Element

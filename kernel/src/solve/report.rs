@@ -13,10 +13,11 @@ pub enum Status {
     /// No further progress is possible though the tolerances are not met, or what was reached is no true minimum: a cusp,
     /// or a functional that a finer quadrature does not confirm. More elements may help.
     Stalled = 2,
-    /// The allowed number of iterations was used up.
+    /// The allowed number of iterations was used up, all of them.
     IterationLimit = 3,
-    /// The shape grows without limit while the functional sinks: these data have no minimum. Add a constraint, or
-    /// choose a functional that has a minimum.
+    /// The shape grows without limit while the functional sinks: these data have no minimum in reach. A curve is then five
+    /// times as long as the polygon through its data or longer, and any that is fifty times as long counts as unbounded,
+    /// unless its length is given. Add a constraint, or choose a functional that has a minimum.
     Unbounded = 4,
     /// The observer asked to stop.
     Cancelled = 5,

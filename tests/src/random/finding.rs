@@ -1,5 +1,7 @@
 //! What a judge may find, how large it may be, and how serious it is beyond that.
 
+use minvar::curve::{FARTHEST, SHOWN_GROWTH, TRUSTED};
+
 /// A check of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Check {
@@ -7,7 +9,7 @@ pub enum Check {
     Refused,
     /// A number of the result is NaN or infinite.
     NotFinite,
-    /// The status is none that a silent solve may end with.
+    /// The status is none that a silent solve may end with, or names a limit that was not reached.
     Status,
     /// A fixed position is not kept to the last bit.
     Position,
@@ -27,8 +29,10 @@ pub enum Check {
     Length,
     /// Converged, but the report's variation or bending is not what the elements measure, as a fraction.
     Figures,
-    /// Converged, but the functional of the elements is not what was reported, as a fraction.
+    /// Converged, but the functional of the elements is not what was minimised, as a fraction.
     Value,
+    /// Converged, but the functional of the elements is not what the report's finer rule says, as a fraction.
+    FineValue,
     /// Converged, but the curve turns by so much (radians) between neighbours of 256 places an element.
     Cusp,
     /// Converged, but the curve is so many times as long as its data.
@@ -69,7 +73,7 @@ pub enum Check {
 
 impl Check {
     /// All of them, in the order of the table.
-    pub const ALL: [Self; 31] = [
+    pub const ALL: [Self; 32] = [
         Self::Refused,
         Self::NotFinite,
         Self::Status,
@@ -83,6 +87,7 @@ impl Check {
         Self::Length,
         Self::Figures,
         Self::Value,
+        Self::FineValue,
         Self::Cusp,
         Self::Grown,
         Self::Slow,
@@ -109,7 +114,7 @@ impl Check {
             Self::Tangent | Self::Kink => 1e-12,
             Self::Curvature | Self::CurvatureJump | Self::Length => 1e-9,
             Self::Figures
-            | Self::Value
+            | Self::FineValue
             | Self::Restart
             | Self::Place
             | Self::Turn
@@ -117,9 +122,11 @@ impl Check {
             | Self::Higher => 1e-6,
             // 45 degrees.
             Self::Cusp => std::f64::consts::FRAC_PI_4,
-            Self::Grown => 50.0,
+            // What the kernel promises of a converged and of an unbounded curve.
+            Self::Value => TRUSTED,
+            Self::Grown => FARTHEST,
             Self::Slow => 30.0,
-            Self::NotGrown => 0.2,
+            Self::NotGrown => 1.0 / SHOWN_GROWTH,
             _ => 0.0,
         }
     }

@@ -4,7 +4,7 @@ use super::finding::{Check, Findings};
 use super::measured::{Measured, is_energy, measure, power, sharpest_turn, slowest};
 use super::problem::Problem;
 use crate::curves::{cross, distance, dot, end_shape, norm, unit};
-use minvar::curve::{Continuity, Curve, Element, Functional, Given, Joint, Report};
+use minvar::curve::{Continuity, Curve, Element, Functional, Given, Joint, Options, Report};
 use minvar::solve::Status;
 
 /// A direction's angle to another.
@@ -53,18 +53,21 @@ pub const MEANINGLESS: f64 = 1e-14;
 /// Judges a result; returns what its elements measure.
 pub fn judge(
     problem: &Problem,
-    functional: Functional,
+    options: &Options,
     report: &Report,
     elements: &[Element],
     findings: &mut Findings,
 ) -> Measured {
+    let functional = options.functional;
     let finite = elements.iter().flat_map(|element| element.rows).flatten().all(f64::is_finite)
         && [report.value, report.fine_value, report.length, report.variation, report.bending]
             .iter()
             .all(|x| x.is_finite() && *x >= 0.0);
     findings.must(Check::NotFinite, finite);
     let known = [Status::Converged, Status::Stalled, Status::IterationLimit, Status::Unbounded];
-    findings.must(Check::Status, known.contains(&report.status));
+    let used_up =
+        report.status != Status::IterationLimit || report.iterations == options.max_iterations as usize;
+    findings.must(Check::Status, known.contains(&report.status) && used_up);
     // Little off a line in any direction, and moved far, is in no plane that the digits could tell.
     let vague = problem.place.shift != [0.0; 3] || problem.family == super::samples::Family::Straight;
     if problem.planar && !vague {
@@ -77,6 +80,7 @@ pub fn judge(
     if report.status == Status::Converged {
         let floor = 4.0 * measured.rounding(functional) + MEANINGLESS * natural(&curve, functional);
         findings.note(Check::Value, apart(report.value, measured.value(functional), floor));
+        findings.note(Check::FineValue, apart(report.fine_value, measured.value(functional), floor));
         findings.note(Check::Cusp, sharpest_turn(elements));
         findings.note(Check::Grown, measured.length / polygon(&curve));
     }
@@ -100,7 +104,9 @@ pub fn judge(
     measured
 }
 
-/// Fixed positions to the last bit, tangents to 1e-12, curvatures to 1e-9 beside what rounding leaves of them.
+/// Fixed positions to the last bit, tangents to 1e-12, curvatures to 1e-9 beside what rounding leaves of them: of `C''`, and of
+/// the direction in which it points, which is a difference of points: a curve that turns by less than rounding from one end
+/// of an element to the other is straight.
 fn constraints(problem: &Problem, elements: &[Element], findings: &mut Findings) {
     let count = problem.joints.len();
     for (i, joint) in problem.joints.iter().enumerate() {
@@ -130,7 +136,8 @@ fn kept(joint: &Joint, side: usize, element: &Element, findings: &mut Findings) 
         let given = joint.curvature[side].value;
         let off =
             if keeps_tangent { distance(curvature, given) } else { (norm(curvature) - norm(given)).abs() };
-        let beyond = (off - 10.0 * rounding).max(0.0);
+        let straight = f64::EPSILON / distance(element.rows[0], element.rows[5]);
+        let beyond = (off - 10.0 * rounding - straight).max(0.0);
         findings.note(Check::Curvature, if beyond == 0.0 { 0.0 } else { beyond / norm(given) });
     }
 }

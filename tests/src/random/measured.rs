@@ -76,6 +76,10 @@ impl Measured {
     }
 }
 
+/// How far the rounding of an element's rows, relative to the largest of them, moves its first three derivatives: what the
+/// basis functions' derivatives sum to, by size.
+const SPREAD: [f64; 3] = [5.0, 18.0, 192.0];
+
 /// A piece is no shorter than its element halved so often.
 const MOST_HALVINGS: u32 = 10;
 
@@ -95,7 +99,18 @@ fn piece(element: &Element, from: f64, to: f64, blur: f64) -> Sums {
         let by_parameter =
             sub(times(cross(d1, d3), 1.0 / cube), times(bend, 3.0 * dot(d1, d2) / (speed * speed)));
         let slope = times(by_parameter, 1.0 / speed);
-        let (slope_blur, bend_blur) = (60.0 * blur / cube, 10.0 * blur / (speed * speed));
+        // To first order, the size of every summand's change: products change by each factor's, powers of the speed by its
+        // own times the exponent. Where a curve nearly stops `C''` is much larger than the curvature asks for.
+        let [e1, e2, e3] = SPREAD.map(|spread| spread * blur);
+        let (second, third, along) = (norm(d2), norm(d3), dot(d1, d2).abs());
+        let [product_blur, other_blur] = [speed * e2 + second * e1, speed * e3 + third * e1];
+        let bend_blur = product_blur / cube + 3.0 * norm(bend) * e1 / speed;
+        let slope_blur = (other_blur / cube
+            + 3.0 * norm(cross(d1, d3)) / cube * e1 / speed
+            + 3.0 * (bend_blur * along + norm(bend) * product_blur) / (speed * speed)
+            + 6.0 * norm(bend) * along / (speed * speed) * e1 / speed
+            + norm(by_parameter) * e1 / speed)
+            / speed;
         let ds = weight * (to - from) * speed;
         for (sum, density) in sums.iter_mut().zip([
             1.0,
@@ -110,15 +125,43 @@ fn piece(element: &Element, from: f64, to: f64, blur: f64) -> Sums {
     sums
 }
 
+/// How the rows of an element may be wrong.
+#[derive(Clone, Copy)]
+struct Blur {
+    /// By rounding of what they are made of: positions too, however far they are from the origin.
+    rows: f64,
+    /// The square of the share of it that is left within the element, where only the chord counts: what an evaluation makes of
+    /// rows that are taken as they stand.
+    own: f64,
+}
+
+impl Blur {
+    fn of(element: &Element) -> Self {
+        let [p0, v0, a0, a1, v1, p1] = element.rows;
+        let largest = |rows: &[Vector]| rows.iter().flatten().fold(0.0f64, |most, x| most.max(x.abs()));
+        let (all, own) = (largest(&element.rows), largest(&[sub(p1, p0), v0, a0, a1, v1]));
+        Self { rows: 2.0 * f64::EPSILON * all, own: own / all * (own / all) }
+    }
+}
+
 /// Halves pieces until both halves together are what the whole is.
-fn adaptive(element: &Element, from: f64, to: f64, whole: Sums, blur: f64, depth: u32, total: &mut Measured) {
+fn adaptive(
+    element: &Element,
+    from: f64,
+    to: f64,
+    whole: Sums,
+    blur: Blur,
+    depth: u32,
+    total: &mut Measured,
+) {
     let middle = 0.5 * (from + to);
-    let halves = [piece(element, from, middle, blur), piece(element, middle, to, blur)];
+    let halves = [piece(element, from, middle, blur.rows), piece(element, middle, to, blur.rows)];
     let sum: Sums = std::array::from_fn(|i| halves[0][i] + halves[1][i]);
+    // An evaluation's error has no sign that it keeps: over the points of a rule it averages out as chance does.
     let same = |i: usize, noise: f64| {
-        (sum[i] - whole[i]).abs() <= 1e-9 * sum[i] + 2.0 * (sum[i] * noise).sqrt() + noise
+        (sum[i] - whole[i]).abs() <= 1e-9 * sum[i] + 2.0 * (sum[i] * noise).sqrt() / 16.0 + noise / 16.0
     };
-    let settled = same(0, 0.0) && same(1, sum[3]) && same(2, sum[4]);
+    let settled = same(0, 0.0) && same(1, sum[3] * blur.own) && same(2, sum[4] * blur.own);
     if settled || depth == 0 {
         total.settled &= settled;
         total.length += sum[0];
@@ -136,9 +179,8 @@ fn adaptive(element: &Element, from: f64, to: f64, whole: Sums, blur: f64, depth
 pub fn measure(elements: &[Element]) -> Measured {
     let mut total = Measured { settled: true, ..Measured::default() };
     for element in elements {
-        let most = element.rows.iter().flatten().fold(0.0f64, |most, x| most.max(x.abs()));
-        let blur = 2.0 * f64::EPSILON * most;
-        adaptive(element, 0.0, 1.0, piece(element, 0.0, 1.0, blur), blur, MOST_HALVINGS, &mut total);
+        let blur = Blur::of(element);
+        adaptive(element, 0.0, 1.0, piece(element, 0.0, 1.0, blur.rows), blur, MOST_HALVINGS, &mut total);
     }
     total
 }

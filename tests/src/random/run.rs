@@ -79,7 +79,7 @@ pub fn run(seed: u64, index: u64, options: &Options, images: Images) -> Outcome 
     outcome.findings.must(Check::Refused, true);
     (outcome.status, outcome.iterations, outcome.linearisations) =
         (report.status, report.iterations, report.linearisations);
-    let measured = judge(&problem, functional, &report, &elements, &mut outcome.findings);
+    let measured = judge(&problem, options, &report, &elements, &mut outcome.findings);
     let base = Solved { report, elements, measured };
     let comparison = Comparison::new(&problem, options, &base);
     for (i, image) in Image::ALL.into_iter().enumerate() {

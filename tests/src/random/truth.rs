@@ -72,7 +72,7 @@ fn other_minimum(problem: &Problem, options: &Options) -> Option<Minimum> {
             return None;
         }
         let mut findings = Findings::default();
-        let _ = judge(problem, options.functional, &report, &elements, &mut findings);
+        let _ = judge(problem, options, &report, &elements, &mut findings);
         (!findings.beyond(Check::Value) && !findings.beyond(Check::Cusp)).then_some(Minimum {
             way,
             value: report.value,

@@ -26,21 +26,21 @@ fn figures(elements: &[Element], mut visit: impl FnMut(Figures, f64)) {
     for element in elements {
         let (rows, unit) = normalised(element);
         let mut figures = Figures::default();
-        figures.add(&rows);
+        figures.add(&rows, |_| 0.0);
         visit(figures, unit);
     }
 }
 
 /// The variation of curvature `V = ∫ |dκ/ds|² ds` of a chain, with `κ` the binormal curvature vector (thesis 4.2), by
-/// 32-point Gauss–Lobatto over each half of every element; 1/length³. What happens between elements (a jump of curvature at a G1 joint) does not count.
+/// 32-point Gauss–Lobatto over each half of every element, and over the halves of that as often as it takes to settle it;
+/// 1/length³. What happens between elements (a jump of curvature at a G1 joint) does not count.
 pub fn variation(elements: &[Element]) -> f64 {
     let mut sum = 0.0;
     figures(elements, |own, unit| sum += own.variation / unit / unit / unit);
     sum
 }
 
-/// The bending energy `E = ∫ κ² ds` of a chain (thesis 4.1), by 32-point Gauss–Lobatto over each half of every
-/// element; 1/length.
+/// The bending energy `E = ∫ κ² ds` of a chain (thesis 4.1), by the same rules as [`variation`]; 1/length.
 pub fn bending(elements: &[Element]) -> f64 {
     let mut sum = 0.0;
     figures(elements, |own, unit| sum += own.bending / unit);
