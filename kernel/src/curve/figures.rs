@@ -7,6 +7,7 @@ use crate::basis::hermite;
 use crate::basis::lanes::{Lanes, WIDTH};
 use crate::basis::mirrored::{pair_count, pairs};
 use crate::basis::quadrature::{FINEST, MAX_POINTS};
+use crate::root::sqrt;
 use nalgebra::SVector;
 
 /// The figures of an element or of many, by 32 Gauss–Lobatto points on each half, and on each half of that again where the
@@ -59,7 +60,7 @@ impl Sums {
         // The error of a slope: a third derivative is the chord times 60 and more, over the speed's cube.
         let slope = 60.0 * blur / (length * length * length);
         let noise = slope * slope * length;
-        !(self.tail > RESOLVED * variation + 2.0 * libm::sqrt(variation * noise) + noise)
+        !(self.tail > RESOLVED * variation + 2.0 * sqrt(variation * noise) + noise)
     }
 }
 

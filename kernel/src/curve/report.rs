@@ -8,6 +8,7 @@ use super::model::Model;
 use super::options::Options;
 use super::passes::{self, Passes};
 use crate::basis::quadrature::MAX_POINTS;
+use crate::root::sqrt;
 use crate::solve::{Outcome, Problem, Status};
 
 /// How a curve came out. All figures in the caller's units.
@@ -164,7 +165,7 @@ fn data_length<const D: usize>(model: &Model<'_, D>) -> f64 {
     let (mut last, mut sum) = (first, 0.0);
     for point in points.chain(model.curve.closed.then_some(first)) {
         let chord = point - last;
-        sum += libm::sqrt(chord.dot(&chord));
+        sum += sqrt(chord.dot(&chord));
         last = point;
     }
     if sum > 0.0 { sum } else { model.start_length }
