@@ -12,6 +12,7 @@
 //! [`workspace_len`] gives. Sums are taken in element order, whatever [`Executor`] computes the elements, so the
 //! bits of the result do not depend on it.
 
+mod descent;
 mod envelope;
 mod executor;
 mod minimise;

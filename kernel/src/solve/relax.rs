@@ -5,14 +5,10 @@
 //! few dozen unknowns at most, while everything shared is held. What the whole then sees is the functional minimised
 //! over them (variable projection), which is far nearer to a quadratic.
 
-use super::envelope::Envelope;
+use super::descent::{Derivatives, Descent, Varied};
 use super::minimise::NO_COST;
-use super::problem::{BlockList, Coupled, MAX_ELEMENT_BLOCKS, Problem, packed, packed_len};
-use super::trust_region::{self, Radius, Vectors};
+use super::problem::{BlockList, Problem, packed_len};
 use super::workspace::{Indices, Workspace};
-
-/// The first radius of an element's own trust region, in natural sizes.
-pub(super) const FIRST_RADIUS: f64 = 0.5;
 
 /// Takes up to `steps` steps in every element of the trial state, one after the other, until a step promises to lower the
 /// objective by less than `enough`. `work.spare` is scratch. Returns how often an element was linearised.
@@ -90,15 +86,6 @@ fn weigh(sums: [f64; 2], weights: [f64; 2]) -> f64 {
     if weights[1] == 0.0 { sums[0] * weights[0] } else { sums[0] * weights[0] + sums[1] * weights[1] }
 }
 
-/// The objective with an element's sums beside those of the rest; of a problem that is not coupled the element's own cost.
-fn objective<P: Problem + ?Sized>(problem: &P, rest: [f64; 2], own: [f64; 2]) -> Coupled {
-    if problem.is_coupled() {
-        problem.couple([rest[0] + own[0], rest[1] + own[1]])
-    } else {
-        Coupled::plain(own)
-    }
-}
-
 /// Whether a block belongs to one element alone.
 pub(super) fn is_private(starts: &Indices<'_>, block: usize) -> bool {
     starts.get(block + 1) - starts.get(block) == 1
@@ -117,145 +104,40 @@ fn relax_element<P: Problem + ?Sized>(
     let mut list = BlockList::new();
     problem.element_blocks(element, &mut list);
     // Its own blocks, and how many unknowns they have.
-    let mut blocks = heapless::Vec::<(usize, usize), MAX_ELEMENT_BLOCKS>::new();
-    let (mut size, mut own) = (0, 0);
+    let mut varied = Varied::new();
+    let mut size = 0;
     for &block in &list {
         let dofs = problem.dofs(block);
         size += dofs;
         if is_private(starts, block) {
-            own += dofs;
-            let _ = blocks.push((block, dofs));
+            varied.push(block, dofs);
         }
     }
-    if own == 0 {
+    if varied.unknowns == 0 {
         return 0;
     }
-    let private = |block: usize| blocks.iter().any(|&(one, _)| one == block);
-    let envelope = Envelope::Full(own);
-    let (matrix, rest) = local.split_at_mut(packed_len(own));
-    let (factor, rest) = rest.split_at_mut(packed_len(own));
-    let (gradient, rest) = rest.split_at_mut(own);
-    let (step, rest) = rest.split_at_mut(own);
-    let (scratch, rest) = rest.split_at_mut(own);
-    let (sizes, rest) = rest.split_at_mut(own);
-    let (direction, rest) = rest.split_at_mut(own);
-    let second_own = &mut rest[..own];
     let (all_gradient, rest) = slots.split_at_mut(size);
     let (all_second, all_matrix) = rest.split_at_mut(if coupled { size } else { 0 });
     let all_matrix = &mut all_matrix[..packed_len(size)];
 
-    let mut radius = Radius(FIRST_RADIUS);
-    let mut shift = 0.0;
-    let mut moved = true;
-    let mut linearisations = 0;
-    let mut value = f64::INFINITY;
-    let mut sums = if coupled { problem.sums(element, trial) } else { [0.0; 2] };
-    let rest = [totals[0] - sums[0], totals[1] - sums[1]];
-    for _ in 0..steps {
-        if moved {
-            let mut at = 0;
-            for &(block, dofs) in &blocks {
-                problem.natural_sizes(block, trial, &mut sizes[at..at + dofs]);
-                at += dofs;
-            }
-            let first = objective(problem, rest, sums).first;
-            let second = if coupled { &mut second_own[..own] } else { &mut [][..] };
-            second.fill(0.0);
-            if let Some(found) =
-                problem.linearise_own(element, trial, first, gradient, second, &mut matrix[..packed_len(own)])
-            {
-                sums = found;
-            } else {
-                all_gradient.fill(0.0);
-                all_second.fill(0.0);
-                all_matrix.fill(0.0);
-                sums = problem.linearise_sums(element, trial, first, all_gradient, all_second, all_matrix);
-                // The rows and columns of the private unknowns.
-                let (mut row, mut i) = (0, 0);
-                for &block in &list {
-                    for _ in 0..problem.dofs(block) {
-                        if private(block) {
-                            gradient[row] = all_gradient[i];
-                            if coupled {
-                                second[row] = all_second[i];
-                            }
-                            let (mut column, mut j) = (0, 0);
-                            for &other in &list {
-                                for _ in 0..problem.dofs(other) {
-                                    if private(other) {
-                                        if j <= i {
-                                            matrix[packed(row, column)] = all_matrix[packed(i, j)];
-                                        }
-                                        column += 1;
-                                    }
-                                    j += 1;
-                                }
-                            }
-                            row += 1;
-                        }
-                        i += 1;
-                    }
-                }
-            }
-            let Coupled { value: found, second: c, .. } = objective(problem, rest, sums);
-            value = found;
-            for row in 0..own {
-                for column in 0..=row {
-                    let entry = &mut matrix[packed(row, column)];
-                    if coupled {
-                        // The coupling's part of rank two, small enough to be added as it is.
-                        let of = |at: usize| [(gradient[at] - first[1] * second[at]) / first[0], second[at]];
-                        let (a, b) = (of(row), of(column));
-                        *entry += a[0] * (c[0][0] * b[0] + c[0][1] * b[1])
-                            + a[1] * (c[1][0] * b[0] + c[1][1] * b[1]);
-                    }
-                    *entry *= sizes[row] * sizes[column];
-                }
-            }
-            for (g, size) in gradient.iter_mut().zip(sizes.iter()) {
-                *g *= size;
-            }
-            linearisations += 1;
-            if !value.is_finite() {
-                break;
-            }
+    let linearise = |state: &[f64], first: [f64; 2], [gradient, second, matrix]: Derivatives<'_>| {
+        if let Some(found) = problem.linearise_own(element, state, first, gradient, second, matrix) {
+            return found;
         }
-        let mut vectors = Vectors { gradient, step, scratch, direction, factor, coupling: None };
-        let Some(found) = trust_region::solve(&envelope, matrix, &mut vectors, radius.0, shift) else {
-            break;
-        };
-        shift = found.shift;
-        if found.predicted <= enough {
-            break;
-        }
-        for (s, size) in step.iter_mut().zip(sizes.iter()) {
-            *s *= size;
-        }
-        let mut at = 0;
-        for &(block, dofs) in &blocks {
-            let range = problem.state_range(block);
-            problem.retract(block, &trial[range.clone()], &step[at..at + dofs], &mut spare[range]);
-            at += dofs;
-        }
-        let tried_sums = problem.sums(element, spare);
-        let tried = objective(problem, rest, tried_sums).value;
-        let ratio = tried.is_finite().then(|| (value - tried) / found.predicted);
-        let accepted = radius.judge(ratio, found.length);
-        for &(block, _) in &blocks {
-            let range = problem.state_range(block);
-            if accepted {
-                trial[range.clone()].copy_from_slice(&spare[range]);
-            } else {
-                spare[range.clone()].copy_from_slice(&trial[range]);
-            }
-        }
-        if accepted {
-            sums = tried_sums;
-        }
-        moved = accepted;
-    }
+        all_gradient.fill(0.0);
+        all_second.fill(0.0);
+        all_matrix.fill(0.0);
+        let sums = problem.linearise_sums(element, state, first, all_gradient, all_second, all_matrix);
+        varied.add(problem, &list, [all_gradient, all_second, all_matrix], [gradient, second, matrix]);
+        sums
+    };
+    let sums = if coupled { problem.sums(element, trial) } else { [0.0; 2] };
+    let others = [totals[0] - sums[0], totals[1] - sums[1]];
+    let descent = Descent { problem, varied: &varied, others, steps, enough };
+    let (sums, linearisations) =
+        descent.run([trial, spare], local, sums, |state| problem.sums(element, state), linearise);
     if coupled {
-        *totals = [rest[0] + sums[0], rest[1] + sums[1]];
+        *totals = [others[0] + sums[0], others[1] + sums[1]];
     }
     linearisations
 }
