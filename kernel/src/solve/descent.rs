@@ -3,6 +3,7 @@
 use super::envelope::Envelope;
 use super::problem::{BlockList, Coupled, MAX_ELEMENT_BLOCKS, Problem, packed, packed_len};
 use super::trust_region::{self, Radius, Vectors};
+use super::workspace::Indices;
 use core::ops::Range;
 
 /// The first radius of such a trust region, in natural sizes.
@@ -33,6 +34,7 @@ impl Varied {
     pub(super) fn add<P: Problem + ?Sized>(
         &self,
         problem: &P,
+        dofs: &Indices<'_>,
         list: &BlockList,
         [all_gradient, all_second, all_matrix]: [&[f64]; 3],
         [gradient, second, matrix]: Derivatives<'_>,
@@ -41,7 +43,7 @@ impl Varied {
         let places = || {
             list.iter().flat_map(|&block| {
                 let found = self.blocks.iter().find(|varied| varied.0 == block).map(|varied| varied.1.start);
-                (0..problem.dofs(block)).map(move |k| found.map(|from| from + k))
+                (0..dofs.get(block)).map(move |k| found.map(|from| from + k))
             })
         };
         for (i, row) in places().enumerate() {

@@ -124,34 +124,15 @@ const MOST_EXPLORATIONS: usize = 3;
 const EXPLORATION: usize = 15;
 
 /// The blocks of an element and the number of its local unknowns.
-fn local_unknowns<P: Problem + ?Sized>(problem: &P, element: usize) -> (BlockList, usize) {
+fn local_unknowns<P: Problem + ?Sized>(
+    problem: &P,
+    dofs: &Indices<'_>,
+    element: usize,
+) -> (BlockList, usize) {
     let mut list = BlockList::new();
     problem.element_blocks(element, &mut list);
-    let local = list.iter().map(|&block| problem.dofs(block)).sum();
+    let local = list.iter().map(|&block| dofs.get(block)).sum();
     (list, local)
-}
-
-/// Moves the state `from` by a scaled step into `to`. `unscaled` is scratch.
-fn move_by<P: Problem + ?Sized>(
-    problem: &P,
-    offset: &Indices<'_>,
-    sizes: &[f64],
-    step: &[f64],
-    unscaled: &mut [f64],
-    from: &[f64],
-    to: &mut [f64],
-) {
-    for ((out, s), size) in unscaled.iter_mut().zip(step).zip(sizes) {
-        *out = s * size;
-    }
-    to.copy_from_slice(from);
-    for block in 0..problem.blocks() {
-        let dofs = problem.dofs(block);
-        if dofs > 0 {
-            let (range, at) = (problem.state_range(block), offset.get(block));
-            problem.retract(block, &from[range.clone()], &unscaled[at..at + dofs], &mut to[range]);
-        }
-    }
 }
 
 struct Run<'a, P: ?Sized> {
@@ -363,8 +344,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
 
     /// Takes the step into the trial state, and relaxes it there unless it keeps a promise as it is; returns the objective.
     fn try_step(&mut self, state: &[f64], promise: Option<f64>, predicted: f64) -> Coupled {
-        let Workspace { trial, step, sizes, offset, scratch, .. } = &mut self.work;
-        move_by(self.problem, offset, sizes, step, scratch, state, trial);
+        self.move_by_step(state);
         if self.relaxation == 0 {
             return self.cost();
         }
@@ -380,6 +360,23 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             self.linearisations += patch::relax(self.problem, &mut self.work, self.relaxation, enough);
         }
         self.cost()
+    }
+
+    /// Moves a state by the scaled step into the trial state.
+    fn move_by_step(&mut self, state: &[f64]) {
+        let Workspace { dofs, trial, step, sizes, offset, scratch, .. } = &mut self.work;
+        for ((out, s), size) in scratch.iter_mut().zip(step.iter()).zip(sizes.iter()) {
+            *out = s * size;
+        }
+        trial.copy_from_slice(state);
+        for block in 0..self.problem.blocks() {
+            let dofs = dofs.get(block);
+            if dofs > 0 {
+                let (range, at) = (self.problem.state_range(block), offset.get(block));
+                let step = &scratch[at..at + dofs];
+                self.problem.retract(block, &state[range.clone()], step, &mut trial[range]);
+            }
+        }
     }
 
     /// The objective at the trial state; infinite outside the domain.
@@ -418,6 +415,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             matrix,
             gradient,
             sizes,
+            dofs,
             offset,
             slots,
             slot_len,
@@ -425,9 +423,10 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             ..
         } = &mut self.work;
         let (coupled, first) = (problem.is_coupled(), self.coupled.first);
+        let dofs = &*dofs;
         let envelope = Envelope::Rows { first: row_first, start: row_start };
         for block in 0..problem.blocks() {
-            let (from, dofs) = (offset.get(block), problem.dofs(block));
+            let (from, dofs) = (offset.get(block), dofs.get(block));
             if dofs > 0 {
                 problem.natural_sizes(block, state, &mut sizes[from..from + dofs]);
             }
@@ -442,7 +441,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             let count = width.min(elements - at);
             let slots = &mut slots[..count * *slot_len];
             self.executor.run(slots, *slot_len, &|index, slot| {
-                let (_, local) = local_unknowns(problem, at + index);
+                let (_, local) = local_unknowns(problem, dofs, at + index);
                 slot.fill(0.0);
                 let (own, rest) = slot.split_at_mut(2);
                 let (gradient, rest) = rest.split_at_mut(local);
@@ -452,7 +451,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                 own.copy_from_slice(&sums);
             });
             for (index, slot) in slots.chunks_exact(*slot_len).enumerate() {
-                let (list, local) = local_unknowns(problem, at + index);
+                let (list, local) = local_unknowns(problem, dofs, at + index);
                 let (own, rest) = slot.split_at(2);
                 let (local_gradient, rest) = rest.split_at(local);
                 let (local_second, local_matrix) = rest.split_at(if coupled { local } else { 0 });
@@ -461,7 +460,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                 let mut i = 0;
                 for &row_block in &list {
                     let row_from = offset.get(row_block);
-                    for row in row_from..row_from + problem.dofs(row_block) {
+                    for row in row_from..row_from + dofs.get(row_block) {
                         gradient[row] += local_gradient[i] * sizes[row];
                         if coupled {
                             second_gradient[row] += local_second[i] * sizes[row];
@@ -469,7 +468,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                         let mut j = 0;
                         'columns: for &column_block in &list {
                             let column_from = offset.get(column_block);
-                            for column in column_from..column_from + problem.dofs(column_block) {
+                            for column in column_from..column_from + dofs.get(column_block) {
                                 if j > i {
                                     break 'columns;
                                 }

@@ -11,6 +11,7 @@ const UNSEEN: usize = 1 << 52;
 /// Which elements touch a block, as lists one behind another.
 struct Graph<'a, 'w, P: ?Sized> {
     problem: &'a P,
+    dofs: &'a Indices<'w>,
     starts: &'a Indices<'w>,
     incident: &'a Indices<'w>,
 }
@@ -22,7 +23,7 @@ impl<P: Problem + ?Sized> Graph<'_, '_, P> {
             let mut list = BlockList::new();
             self.problem.element_blocks(self.incident.get(at), &mut list);
             for &other in &list {
-                if other != block && self.problem.dofs(other) > 0 {
+                if other != block && self.dofs.get(other) > 0 {
                     visit(other);
                 }
             }
@@ -103,11 +104,11 @@ fn forget(level: &mut Indices<'_>, order: &Indices<'_>, from: usize, to: usize) 
 }
 
 /// Takes the blocks in the order that the problem knows to be good. Returns how many have dofs.
-fn take_known<P: Problem + ?Sized>(problem: &P, order: &mut Indices<'_>) -> usize {
+fn take_known<P: Problem + ?Sized>(problem: &P, dofs: &Indices<'_>, order: &mut Indices<'_>) -> usize {
     let mut ordered = 0;
     for place in 0..problem.blocks() {
         let block = problem.block_at(place).unwrap_or(place);
-        if problem.dofs(block) > 0 {
+        if dofs.get(block) > 0 {
             order.set(ordered, block);
             ordered += 1;
         }
@@ -133,7 +134,7 @@ fn reverse_cuthill_mckee<P: Problem + ?Sized>(
     let mut ordered = 0;
     loop {
         let root = (0..blocks)
-            .filter(|&block| level.get(block) == UNSEEN && problem.dofs(block) > 0)
+            .filter(|&block| level.get(block) == UNSEEN && graph.dofs.get(block) > 0)
             .min_by_key(|&block| (degree.get(block), block));
         let Some(mut root) = root else { break };
         let (mut end, mut depth) = search(graph, degree, level, order, ordered, root);
@@ -172,16 +173,20 @@ fn reverse_cuthill_mckee<P: Problem + ?Sized>(
 pub(super) fn order_blocks<P: Problem + ?Sized>(problem: &P, work: &mut Workspace<'_>) -> usize {
     let blocks = problem.blocks();
     build_incidence(problem, work);
-    let Workspace { order, offset, starts, incident, degree, level, row_first, row_start, .. } = work;
-    let graph = Graph { problem, starts, incident };
+    for block in 0..blocks {
+        work.dofs.set(block, problem.dofs(block));
+    }
+    let Workspace { dofs, order, offset, starts, incident, degree, level, row_first, row_start, .. } = work;
+    let (dofs, starts, incident) = (&*dofs, &*starts, &*incident);
+    let graph = Graph { problem, dofs, starts, incident };
     let mut ordered = if problem.block_at(0).is_some() {
-        take_known(problem, order)
+        take_known(problem, dofs, order)
     } else {
         reverse_cuthill_mckee(&graph, degree, level, order)
     };
     // Blocks without dofs come last: they have no rows.
     for block in 0..blocks {
-        if problem.dofs(block) == 0 {
+        if dofs.get(block) == 0 {
             order.set(ordered, block);
             ordered += 1;
         }
@@ -191,14 +196,14 @@ pub(super) fn order_blocks<P: Problem + ?Sized>(problem: &P, work: &mut Workspac
     for at in 0..blocks {
         let block = order.get(at);
         offset.set(block, row);
-        row += problem.dofs(block);
+        row += dofs.get(block);
     }
     let mut entries = 0;
     for at in 0..blocks {
         let block = order.get(at);
         let mut first = offset.get(block);
         graph.neighbours(block, |other| first = first.min(offset.get(other)));
-        for dof in 0..problem.dofs(block) {
+        for dof in 0..dofs.get(block) {
             let row = offset.get(block) + dof;
             row_first.set(row, first);
             row_start.set(row, entries);

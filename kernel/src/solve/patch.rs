@@ -30,6 +30,7 @@ pub(super) fn relax<P: Problem + ?Sized>(
 /// A loose block's elements, and the blocks that vary: the loose one and what those elements share with no other block.
 struct Patch<'p, 'w, P: ?Sized> {
     problem: &'p P,
+    dofs: &'p Indices<'w>,
     incident: &'p Indices<'w>,
     /// Where the elements stand among the incident ones.
     elements: Range<usize>,
@@ -37,18 +38,18 @@ struct Patch<'p, 'w, P: ?Sized> {
 }
 
 impl<'p, 'w, P: Problem + ?Sized> Patch<'p, 'w, P> {
-    fn around(problem: &'p P, starts: &Indices<'w>, incident: &'p Indices<'w>, loose: usize) -> Self {
+    fn around(problem: &'p P, [dofs, starts, incident]: [&'p Indices<'w>; 3], loose: usize) -> Self {
         let elements = starts.get(loose)..starts.get(loose + 1);
         let mut varied = Varied::new();
-        varied.push(loose, problem.dofs(loose));
+        varied.push(loose, dofs.get(loose));
         for at in elements.clone() {
             let mut list = BlockList::new();
             problem.element_blocks(incident.get(at), &mut list);
             for &block in list.iter().filter(|&&block| block != loose && is_private(starts, block)) {
-                varied.push(block, problem.dofs(block));
+                varied.push(block, dofs.get(block));
             }
         }
-        Self { problem, incident, elements, varied }
+        Self { problem, dofs, incident, elements, varied }
     }
 
     fn sums(&self, state: &[f64]) -> [f64; 2] {
@@ -64,14 +65,14 @@ impl<'p, 'w, P: Problem + ?Sized> Patch<'p, 'w, P> {
     /// Adds up the elements' derivatives with these weights of the sums, and returns the sums; `slots` is room for one
     /// element's.
     fn linearise(&self, state: &[f64], first: [f64; 2], slots: &mut [f64], to: Derivatives<'_>) -> [f64; 2] {
-        let problem = self.problem;
+        let Self { problem, dofs, .. } = *self;
         let [gradient, second, matrix] = to;
         let mut sums = [0.0; 2];
         for at in self.elements.clone() {
             let element = self.incident.get(at);
             let mut list = BlockList::new();
             problem.element_blocks(element, &mut list);
-            let size: usize = list.iter().map(|&block| problem.dofs(block)).sum();
+            let size: usize = list.iter().map(|&block| dofs.get(block)).sum();
             let (all_gradient, rest) = slots.split_at_mut(size);
             let (all_second, rest) = rest.split_at_mut(if problem.is_coupled() { size } else { 0 });
             let all_matrix = &mut rest[..packed_len(size)];
@@ -83,7 +84,7 @@ impl<'p, 'w, P: Problem + ?Sized> Patch<'p, 'w, P> {
             sums[0] += own;
             sums[1] += other;
             let to = [&mut *gradient, &mut *second, &mut *matrix];
-            self.varied.add(problem, &list, [all_gradient, all_second, all_matrix], to);
+            self.varied.add(problem, dofs, &list, [all_gradient, all_second, all_matrix], to);
         }
         sums
     }
@@ -97,8 +98,8 @@ fn relax_patch<P: Problem + ?Sized>(
     totals: &mut [f64; 2],
     enough: f64,
 ) -> usize {
-    let Workspace { starts, incident, trial, spare, slots, local, .. } = work;
-    let patch = Patch::around(problem, starts, incident, loose);
+    let Workspace { dofs, starts, incident, trial, spare, slots, local, .. } = work;
+    let patch = Patch::around(problem, [dofs, starts, incident], loose);
     let sums = patch.sums(trial);
     let others = [totals[0] - sums[0], totals[1] - sums[1]];
     if !(sums[0].is_finite() && sums[1].is_finite()) {

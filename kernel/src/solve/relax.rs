@@ -100,14 +100,14 @@ fn relax_element<P: Problem + ?Sized>(
     enough: f64,
 ) -> usize {
     let coupled = problem.is_coupled();
-    let Workspace { starts, trial, spare, slots, local, .. } = work;
+    let Workspace { dofs, starts, trial, spare, slots, local, .. } = work;
     let mut list = BlockList::new();
     problem.element_blocks(element, &mut list);
     // Its own blocks, and how many unknowns they have.
     let mut varied = Varied::new();
     let mut size = 0;
     for &block in &list {
-        let dofs = problem.dofs(block);
+        let dofs = dofs.get(block);
         size += dofs;
         if is_private(starts, block) {
             varied.push(block, dofs);
@@ -128,7 +128,7 @@ fn relax_element<P: Problem + ?Sized>(
         all_second.fill(0.0);
         all_matrix.fill(0.0);
         let sums = problem.linearise_sums(element, state, first, all_gradient, all_second, all_matrix);
-        varied.add(problem, &list, [all_gradient, all_second, all_matrix], [gradient, second, matrix]);
+        varied.add(problem, dofs, &list, [all_gradient, all_second, all_matrix], [gradient, second, matrix]);
         sums
     };
     let sums = if coupled { problem.sums(element, trial) } else { [0.0; 2] };

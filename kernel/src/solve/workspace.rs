@@ -51,9 +51,10 @@ impl Layout {
     }
 
     /// The lengths of the parts, in the order in which [`Layout::carve`] hands them out.
-    fn parts(&self) -> [usize; 24] {
+    fn parts(&self) -> [usize; 25] {
         let Self { unknowns: n, blocks, incidences, envelope, state, slot, slots, local, coupled } = *self;
         [
+            blocks,     // dofs
             blocks,     // order
             blocks,     // offset
             blocks + 1, // incidence starts
@@ -97,6 +98,7 @@ impl Layout {
             part
         });
         let [
+            dofs,
             order,
             offset,
             starts,
@@ -123,6 +125,7 @@ impl Layout {
             second_solved,
         ] = parts;
         Ok(Workspace {
+            dofs: Indices(dofs),
             order: Indices(order),
             offset: Indices(offset),
             starts: Indices(starts),
@@ -152,6 +155,8 @@ impl Layout {
 
 /// The parts of a carved workspace.
 pub(super) struct Workspace<'a> {
+    /// How many unknowns each block has.
+    pub(super) dofs: Indices<'a>,
     pub(super) order: Indices<'a>,
     pub(super) offset: Indices<'a>,
     pub(super) starts: Indices<'a>,
