@@ -56,8 +56,10 @@ where
 {
     let mut figures = Figures::default();
     (0..model.element_count()).for_each(|element| {
-        figures.add(&model.rows(element, state), |piece| {
-            model.space.as_ref().map_or(0.0, |space| space.value(piece, MAX_POINTS))
+        figures.add(&model.rows(element, state), |piece| match &model.space {
+            // No planar curve knows torsion.
+            Some(space) if D == 3 => space.value(piece, MAX_POINTS),
+            _ => 0.0,
         });
     });
     figures
