@@ -120,8 +120,9 @@ took 21 iterations by SI-MEC.)
 free to slide, together with its two elements. A curve of which nothing is fixed, the figure-8, is held at two of its joints: \
 moving, turning and scaling it has no effect, but in bent coordinates looks like a negative curvature. (Without both it took 55 \
 and 144 iterations by SI-MVC and SI-MEC.)
-- *Several minima.* One element a span has minima of its parametrisation that differ in the seventh digit. They are compared as \
-soon as a Newton step promises less than that, not when all digits of the first one are known. (Peters' helix by MEC took 16.)
+- *Several minima.* One element a span has minima of its parametrisation that differ in the seventh digit or later. They are \
+compared as soon as a Newton step promises less than a difference that counts, not when all digits of the first one are known. \
+(Peters' helix by MEC took 16.)
 - *Step control.* From elements that run along a known curve the first steps are short, for the valleys of an energy's \
 parametrisation are bent; everywhere else a step may be as long as a turn by one radian.
 ";

@@ -106,10 +106,6 @@ const ZERO_COST: f64 = 1e-3;
 /// A cost below this part of what is natural is rounding: no step can be judged any more.
 pub(super) const NO_COST: f64 = 1e-20;
 
-/// A Newton step that promises less than this part of the objective changes the shape by too little to make another of an
-/// element's minima the least.
-const SETTLED: f64 = 1e-7;
-
 /// A step that brings this part of what it promised need not be helped.
 const KEPT: f64 = 0.9;
 /// Before the first step elements are relaxed until one promises less than this part of the tolerance.
@@ -244,10 +240,10 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             let last = near && (step.predicted <= POLISH_FLOOR * floor || polish == 0 || step.shift > 0.0);
             // A ball that shrank to nothing proves nothing; otherwise there is nothing left to gain.
             let whole = step.shift == 0.0 || radius.0 > 1e3 * least_radius;
-            // Other minima of the elements are looked for as soon as the shape is known well enough to tell them apart: digits
-            // that were found before would be found in vain.
-            let settled = step.shift == 0.0 && step.predicted <= SETTLED * value;
-            let moved = !(explored - value <= SETTLED * value);
+            // Other minima of the elements are looked for as soon as a step promises less than they must gain: digits that were
+            // found before would be found in vain.
+            let settled = step.shift == 0.0 && step.predicted <= relax::BETTER * value;
+            let moved = explored - value > relax::BETTER * value;
             if explorations > 0 && moved && (settled || (last && whole)) {
                 explored = value;
                 if self.hop(state, value) {
