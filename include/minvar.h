@@ -267,7 +267,8 @@ typedef struct minvar_options {
     // start values alone lead elsewhere. At most 16. Default 0.
     uint32_t continuation;
     // Converged when another step promises to lower the functional by less than this fraction, or 20 iterations
-    // together lowered it by less than a thousand times that; 0 to below 1. Default 1e-12.
+    // together lowered it by less than a thousand times that; 0 to below 1. Above 1e-9 converged, too, when no step as
+    // long as an element's speed promises more, and no other minima of single elements are looked for. Default 1e-12.
     double relative_decrease;
     // This weight times the length is added to the functional: a tension. In the functional's unit over a length, 0 or
     // more; 0 with a scale-invariant functional. Default 0.
@@ -391,9 +392,9 @@ typedef struct minvar_report {
     size_t unknowns;
     // The functional's value by the rule that was minimised with.
     double value;
-    // The functional's value by a finer rule: 32 points on each half, and on the halves of that wherever they do not settle
-    // it; to 1e-6. A converged curve's differs from `value` by no more than 1e-4 of it; where by much more than rounding, the
-    // curve is wild for its elements: take more of them.
+    // The functional's value by a finer rule: 32 points on each half, and on the halves of that wherever they do not
+    // settle it; to 1e-6. A converged curve's differs from `value` by no more than 1e-4 of it; where by much more than
+    // rounding, the curve is wild for its elements: take more of them.
     double fine_value;
     // The length L.
     double length;
@@ -404,8 +405,8 @@ typedef struct minvar_report {
     // The estimated distance from the true minimum, where a tolerance was asked for, else 0; infinite where there is no
     // estimate.
     double error;
-    // The largest gradient component, each times its unknown's natural size, as a fraction of the functional; infinite where
-    // little was asked for (a relative_decrease above 1e-9) and no step of the elements was needed for it.
+    // The largest gradient component, each times its unknown's natural size, as a fraction of the functional; infinite
+    // where little was asked for (a relative_decrease above 1e-9) and no step of the elements was needed for it.
     double gradient;
     // The decrease that another Newton step would promise; infinite where the Hessian is not positive definite. Where
     // no step was needed: an estimate of what the functional exceeds the true curve's by.
@@ -679,8 +680,8 @@ enum minvar_code minvar_curve_update(const struct minvar_curve *curve,
 //
 // `reports` has room for `reports_len` reports and receives one a minimum, the lowest first. `elements` has room for
 // `(reports_len + 1)` times minvar_curve_elements_len() elements: the first so many receive the first minimum's, and so on;
-// the last are scratch. `count` receives the number of minima. `observer` sees every solve begin with iteration 1. The rest
-// as in minvar_curve_solve().
+// the last are scratch. `count` receives the number of minima. `observer` sees every solve begin with iteration 1. The
+// rest as in minvar_curve_solve().
 //
 // Errors: as minvar_curve_solve().
 enum minvar_code minvar_curve_minima(const struct minvar_curve *curve,
@@ -749,8 +750,8 @@ struct minvar_joint minvar_joint_held_at(struct minvar_point place);
 // control).
 //
 // The curve is a chain of `count` elements, which returns to its start if `closed` is not 0. The region is
-// `region_count` elements, 1 or more, from `first` on, from 0; of a closed curve they may run past the last element into the
-// first ones. Its ends may be joints of the curve or any other ends of elements.
+// `region_count` elements, 1 or more, from `first` on, from 0; of a closed curve they may run past the last element
+// into the first ones. Its ends may be joints of the curve or any other ends of elements.
 //
 // `joints`: the region's joints in order, `joint_count`, two or more; inner ones may be moved, added and removed. The first
 // and the last are changed: what a joint's continuity makes common is fixed as the rest has it there, the position to the

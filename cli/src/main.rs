@@ -111,7 +111,8 @@ fn curve(arguments: &CurveArguments) -> Result<Status, Failure> {
 /// A functional below this, in the curve's length, is nothing.
 const NOTHING: f64 = 1e-12;
 
-/// The index of the minimum that is asked for by its number, from 1. What has not converged is no minimum, but all there is.
+/// The index of the minimum that is asked for by its number, from 1. What has not converged is no minimum, but all
+/// there is.
 fn chosen(number: usize, solutions: &[Solution]) -> Result<usize, Failure> {
     if number <= solutions.len() || solutions[0].status != Status::Converged {
         return Ok(number.min(solutions.len()) - 1);

@@ -310,8 +310,8 @@ fn joint(named: &NamedJoint) -> Joint {
 }
 
 impl Error {
-    /// The kernel's error with the joints' and options' names as the user wrote them. `apart`: the obstacle that does not lie
-    /// in the joints' plane.
+    /// The kernel's error with the joints' and options' names as the user wrote them. `apart`: the obstacle that does
+    /// not lie in the joints' plane.
     fn of(error: CurveError, specification: &Specification, options: &Options, apart: Option<usize>) -> Self {
         let joint = match error {
             CurveError::NotFinite { joint, .. }

@@ -169,7 +169,8 @@ pub struct minvar_options {
     /// start values alone lead elsewhere. At most 16. Default 0.
     pub continuation: u32,
     /// Converged when another step promises to lower the functional by less than this fraction, or 20 iterations
-    /// together lowered it by less than a thousand times that; 0 to below 1. Default 1e-12.
+    /// together lowered it by less than a thousand times that; 0 to below 1. Above 1e-9 converged, too, when no step as
+    /// long as an element's speed promises more, and no other minima of single elements are looked for. Default 1e-12.
     pub relative_decrease: f64,
     /// This weight times the length is added to the functional: a tension. In the functional's unit over a length, 0 or
     /// more; 0 with a scale-invariant functional. Default 0.
@@ -231,9 +232,9 @@ pub struct minvar_report {
     pub unknowns: usize,
     /// The functional's value by the rule that was minimised with.
     pub value: f64,
-    /// The functional's value by a finer rule: 32 points on each half, and on the halves of that wherever they do not settle
-    /// it; to 1e-6. A converged curve's differs from `value` by no more than 1e-4 of it; where by much more than rounding, the
-    /// curve is wild for its elements: take more of them.
+    /// The functional's value by a finer rule: 32 points on each half, and on the halves of that wherever they do not
+    /// settle it; to 1e-6. A converged curve's differs from `value` by no more than 1e-4 of it; where by much more than
+    /// rounding, the curve is wild for its elements: take more of them.
     pub fine_value: f64,
     /// The length L.
     pub length: f64,
@@ -244,8 +245,8 @@ pub struct minvar_report {
     /// The estimated distance from the true minimum, where a tolerance was asked for, else 0; infinite where there is no
     /// estimate.
     pub error: f64,
-    /// The largest gradient component, each times its unknown's natural size, as a fraction of the functional; infinite where
-    /// little was asked for (a relative_decrease above 1e-9) and no step of the elements was needed for it.
+    /// The largest gradient component, each times its unknown's natural size, as a fraction of the functional; infinite
+    /// where little was asked for (a relative_decrease above 1e-9) and no step of the elements was needed for it.
     pub gradient: f64,
     /// The decrease that another Newton step would promise; infinite where the Hessian is not positive definite. Where
     /// no step was needed: an estimate of what the functional exceeds the true curve's by.
@@ -612,8 +613,8 @@ pub unsafe extern "C" fn minvar_curve_update(
 ///
 /// `reports` has room for `reports_len` reports and receives one a minimum, the lowest first. `elements` has room for
 /// `(reports_len + 1)` times minvar_curve_elements_len() elements: the first so many receive the first minimum's, and so on;
-/// the last are scratch. `count` receives the number of minima. `observer` sees every solve begin with iteration 1. The rest
-/// as in minvar_curve_solve().
+/// the last are scratch. `count` receives the number of minima. `observer` sees every solve begin with iteration 1. The
+/// rest as in minvar_curve_solve().
 ///
 /// Errors: as minvar_curve_solve().
 #[unsafe(no_mangle)]

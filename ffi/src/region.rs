@@ -22,8 +22,8 @@ pub extern "C" fn minvar_joint_held_at(place: minvar_point) -> minvar_joint {
 /// control).
 ///
 /// The curve is a chain of `count` elements, which returns to its start if `closed` is not 0. The region is
-/// `region_count` elements, 1 or more, from `first` on, from 0; of a closed curve they may run past the last element into the
-/// first ones. Its ends may be joints of the curve or any other ends of elements.
+/// `region_count` elements, 1 or more, from `first` on, from 0; of a closed curve they may run past the last element
+/// into the first ones. Its ends may be joints of the curve or any other ends of elements.
 ///
 /// `joints`: the region's joints in order, `joint_count`, two or more; inner ones may be moved, added and removed. The first
 /// and the last are changed: what a joint's continuity makes common is fixed as the rest has it there, the position to the

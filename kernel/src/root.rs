@@ -1,8 +1,8 @@
 //! The square root, which IEEE 754 rounds the same way everywhere.
 //!
-//! Stable Rust's `core` has none. libm's has the same bits, but with SSE it is an instruction in the old encoding behind the
-//! compiler's back: it never takes two numbers at once, and in a program built for AVX it stalls the vector units
-//! (a whole solve was three times slower). There the instruction is asked for by its intrinsic.
+//! Stable Rust's `core` has none. libm's has the same bits, but with SSE it is an instruction in the old encoding
+//! behind the compiler's back: it never takes two numbers at once, and in a program built for AVX it stalls the vector
+//! units (a whole solve was three times slower). There the instruction is asked for by its intrinsic.
 
 #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
 mod machine {

@@ -94,8 +94,8 @@ pub struct Options {
 }
 
 impl Options {
-    /// Newton from the start. It reaches better minima of multi-element curves than Levenberg–Marquardt's end, which lies far
-    /// along a flat valley.
+    /// Newton from the start. It reaches better minima of multi-element curves than Levenberg–Marquardt's end, which
+    /// lies far along a flat valley.
     pub fn newton() -> Self {
         Self { ceres_iterations: 0, newton_iterations: 1000, ..Self::default() }
     }
@@ -143,8 +143,8 @@ pub struct Certificate {
     pub smallest_eigenvalue: f64,
     /// The largest, for comparison.
     pub largest_eigenvalue: f64,
-    /// The largest difference between the given rows and those that their parameters and the constraints make: large when the
-    /// rows break a constraint or the continuity.
+    /// The largest difference between the given rows and those that their parameters and the constraints make: large
+    /// when the rows break a constraint or the continuity.
     pub defect: f64,
     /// How many free parameters there are.
     pub parameters: usize,

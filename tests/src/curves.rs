@@ -121,8 +121,8 @@ pub fn derivatives(element: &Element, t: f64) -> [Vector; 4] {
     out
 }
 
-/// The unit tangent and the curvature vector at the start (`end` 0) or the end (1), read off the rows, and how well rounding
-/// lets the curvature be known there: it is what remains of `C''` across the tangent.
+/// The unit tangent and the curvature vector at the start (`end` 0) or the end (1), read off the rows, and how well
+/// rounding lets the curvature be known there: it is what remains of `C''` across the tangent.
 pub fn end_shape(element: &Element, end: usize) -> (Vector, Vector, f64) {
     let (first, second) =
         if end == 0 { (element.rows[1], element.rows[2]) } else { (element.rows[4], element.rows[3]) };

@@ -62,8 +62,8 @@ pub fn way_of(figure: &Figure, functional: Functional) -> Way {
     way(&kernel_joints(figure), figure.closed, functional)
 }
 
-/// Whether a set has a minimum: an energy with a fixed curvature beside free tangents (Fig. 4.9) only has an infimum, and the
-/// antipodal S and the free figure-8 grow without limit unless size does not count.
+/// Whether a set has a minimum: an energy with a fixed curvature beside free tangents (Fig. 4.9) only has an infimum,
+/// and the antipodal S and the free figure-8 grow without limit unless size does not count.
 pub fn has_minimum(id: &str, functional: Functional) -> bool {
     match id {
         "4.9-1" | "4.9-2" => matches!(functional, Functional::MVC | Functional::SI_MVC),

@@ -9,8 +9,9 @@
 //! ```
 //!
 //! Joints are conditions with multipliers. Newton's method on the stationarity of the Lagrangian, with exact second
-//! derivatives, ends at rounding; the series converges faster than any power of its degree: 20 gives twelve digits of an MVC,
-//! an elastica of few spans needs 40. Nothing here knows the kernel: no elements, no parametrisation, no quadrature of densities.
+//! derivatives, ends at rounding; the series converges faster than any power of its degree: 20 gives twelve digits of
+//! an MVC, an elastica of few spans needs 40. Nothing here knows the kernel: no elements, no parametrisation, no
+//! quadrature of densities.
 //!
 //! [`legendre`] has the series, [`dense`] the linear algebra, [`system`] unknowns, functional and conditions, [`newton`]
 //! the iteration, [`start`] where it begins, [`shape`] what is measured at the result, [`quintic`] the elements that it is

@@ -1,4 +1,5 @@
-//! Bad input: an error that names the culprit, found before any work; or a status. Never a panic, never a number that is none.
+//! Bad input: an error that names the culprit, found before any work; or a status. Never a panic, never a number that
+//! is none.
 
 use minvar::curve::{
     Continuity, Curve, CurveError, Element, Functional, Given, Joint, OptionName, Options, Part, Quantity,

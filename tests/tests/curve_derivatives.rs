@@ -1,10 +1,10 @@
 //! A certificate, from outside, that the kernel's derivatives are right: at a converged curve the functional's gradient
 //! vanishes along every admissible motion.
 //!
-//! The motions are made here from elements and joints alone: the speed and the stretch of each end of an element, the turn of
-//! a tangent that is not fixed, a curvature that is not fixed, a point that is not fixed. The functional is that of the
-//! thesis, by its formulas, over 40 Gauss–Legendre points, in dual numbers: the gradient is exact to rounding. Wrong
-//! derivatives in the kernel would lead to curves where it does not vanish.
+//! The motions are made here from elements and joints alone: the speed and the stretch of each end of an element, the
+//! turn of a tangent that is not fixed, a curvature that is not fixed, a point that is not fixed. The functional is
+//! that of the thesis, by its formulas, over 40 Gauss–Legendre points, in dual numbers: the gradient is exact to
+//! rounding. Wrong derivatives in the kernel would lead to curves where it does not vanish.
 
 use minvar::curve::{Continuity, Element, Functional, Given, Joint, Options};
 use minvar::solve::Status;
@@ -520,9 +520,9 @@ fn natural(family: &Family) -> f64 {
     family.ends.iter().map(|ends| 1.0 / of(ends[0].speed)).sum()
 }
 
-/// A slope is small as a fraction of the functional, or of a thousandth of its natural size where it nearly vanishes. What could
-/// still be gained is below any tolerance, or below what rounding lets one know of a sum of squares of residuals that are
-/// themselves known to rounding of their natural size.
+/// A slope is small as a fraction of the functional, or of a thousandth of its natural size where it nearly vanishes.
+/// What could still be gained is below any tolerance, or below what rounding lets one know of a sum of squares of
+/// residuals that are themselves known to rounding of their natural size.
 fn is_certain(functional: Functional, elements_per_span: u32, slope: f64) {
     for (figure, family) in minima(functional, elements_per_span) {
         let certificate = family.certificate();

@@ -1,5 +1,5 @@
-//! The functionals and constraints beyond MVC and MEC, against true curves in arc length (`data/truth.csv`) and against what
-//! must hold of them.
+//! The functionals and constraints beyond MVC and MEC, against true curves in arc length (`data/truth.csv`) and against
+//! what must hold of them.
 
 use minvar::curve::{
     Curve, CurveError, Element, Functional, Joint, Obstacle, OptionName, Options, Quantity, Reference,
@@ -162,7 +162,8 @@ fn a_tolerance_is_kept_by_as_few_elements_as_it_needs() {
         before = report.elements;
     }
     assert!(before > 6);
-    // One element a span is a fifth of a millionth off (`truth.rs`): measured, too much for one tolerance and enough for another.
+    // One element a span is a fifth of a millionth off (`truth.rs`): measured, too much for one tolerance and enough
+    // for another.
     for (tolerance, status) in [(1e-9, Status::Stalled), (1e-5, Status::Converged)] {
         let options = Options { tolerance, elements_per_span: 1, ..Options::DEFAULT };
         let (report, _) = solve_curve(&woodford(), false, &options).expect("good data");
@@ -467,8 +468,8 @@ fn a_curve_keeps_clear_of_its_obstacles_and_touches_only_what_pushes() {
     }
 }
 
-/// Random waves past random obstacles, some of them within reach of a joint: where a minimum is claimed, a look at many places
-/// finds none too near. Not all have one.
+/// Random waves past random obstacles, some of them within reach of a joint: where a minimum is claimed, a look at many
+/// places finds none too near. Not all have one.
 #[test]
 fn no_obstacle_is_too_near_to_a_curve_that_converged() {
     let mut seed = 11u64;
@@ -661,8 +662,8 @@ fn a_continuation_under_tension_leads_to_the_short_curve() {
     }
 }
 
-/// An antisymmetric S has a minimum up to 112.16 degrees (`truth.rs`): beyond, at every whole degree and to either side, the
-/// curve grows without limit.
+/// An antisymmetric S has a minimum up to 112.16 degrees (`truth.rs`): beyond, at every whole degree and to either
+/// side, the curve grows without limit.
 #[test]
 fn every_s_beyond_its_last_minimum_is_unbounded() {
     for degrees in (113..=180).flat_map(|degrees| [f64::from(degrees), -f64::from(degrees)]) {

@@ -278,8 +278,8 @@ proptest! {
         commutes(&data, &Similarity { orthogonal: |v: Vector| [v[0], -v[1], v[2]], scale: 1.0, shift: ORIGIN }, 1e-6)?;
     }
 
-    /// Where little is asked for, elements that run along the curve's direction as a function of arc length are taken as they are,
-    /// by an estimate of what they exceed the minimum by.
+    /// Where little is asked for, elements that run along the curve's direction as a function of arc length are taken
+    /// as they are, by an estimate of what they exceed the minimum by.
     #[test]
     fn what_is_asked_for_loosely_is_as_near_as_asked(data in data(SMOOTH), digits in 4..9, functional in 0u32..4) {
         let relative_decrease = 0.1f64.powi(digits);
@@ -295,8 +295,8 @@ proptest! {
         }
     }
 
-    /// A quintic's minima come in pairs that differ in which end it runs through faster; where both are as good as equal, the
-    /// reversed data may find the other one.
+    /// A quintic's minima come in pairs that differ in which end it runs through faster; where both are as good as
+    /// equal, the reversed data may find the other one.
     #[test]
     fn reversing_the_joints_reverses_the_curve(data in data(SMOOTH)) {
         let (report, elements) = data.solve(&Options::DEFAULT);
@@ -489,8 +489,8 @@ proptest! {
 proptest! {
     #![proptest_config(cases(12))]
 
-    /// A span of two elements has a free G2 point in its middle. Giving that point as a joint changes neither the set of curves
-    /// nor the minimum.
+    /// A span of two elements has a free G2 point in its middle. Giving that point as a joint changes neither the set
+    /// of curves nor the minimum.
     #[test]
     fn a_joint_between_two_elements_of_a_span_changes_nothing(data in data(SMOOTH)) {
         let two = Options { elements_per_span: 2, max_iterations: 1000, ..Options::DEFAULT };

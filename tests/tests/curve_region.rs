@@ -123,7 +123,8 @@ fn a_region_whose_joints_stay_comes_out_as_it_was() {
                     ] {
                         let what = format!("closed {closed}, {functional:?}, {parts}: {first}, {count}");
                         let ratio = value(functional, &fresh) / value(functional, &old);
-                        // The parametrisation of single elements has minima of its own, of which a part may find a lower one.
+                        // The parametrisation of single elements has minima of its own, of which a part may find a
+                        // lower one.
                         let lower = if parts == 1 { 1e-7 } else { 1e-9 };
                         assert!(ratio <= 1.0 + 1e-9 && ratio >= 1.0 - lower, "{what}: {ratio}");
                         let off = deviation(&fresh, &old, count);

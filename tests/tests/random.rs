@@ -1,4 +1,5 @@
-//! Random problems with a fixed seed, judged as `make random` judges twenty thousand; and the judge himself put to the test.
+//! Random problems with a fixed seed, judged as `make random` judges twenty thousand; and the judge himself put to the
+//! test.
 
 use minvar::curve::{Continuity, Element, Functional, Given, Joint, Options, Quantity, Report};
 use minvar::solve::Status;

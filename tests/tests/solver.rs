@@ -552,8 +552,8 @@ fn the_executor_does_not_change_a_bit() {
     }
 }
 
-/// A chain of blocks of `dofs` numbers whose places in the list of blocks are shuffled, as are its elements: a sum of squares
-/// of steps, with one end held. `bound` is what it tells the solver of its envelope.
+/// A chain of blocks of `dofs` numbers whose places in the list of blocks are shuffled, as are its elements: a sum of
+/// squares of steps, with one end held. `bound` is what it tells the solver of its envelope.
 struct Shuffled {
     place: Vec<usize>,
     elements: Vec<usize>,

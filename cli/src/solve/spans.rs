@@ -1,5 +1,5 @@
-//! Where the joints stand among the elements. With a tolerance or obstacles each span has as many as it needs, and the kernel
-//! does not say which are whose: a fixed joint is known by its point, the others by what is known of them.
+//! Where the joints stand among the elements. With a tolerance or obstacles each span has as many as it needs, and the
+//! kernel does not say which are whose: a fixed joint is known by its point, the others by what is known of them.
 
 use super::Options;
 use crate::constraints::{Given, NamedJoint, Specification};

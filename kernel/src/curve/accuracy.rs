@@ -1,13 +1,13 @@
 //! As many elements as a tolerance asks for.
 //!
-//! A curve's distance from the true minimum is estimated from how far it moves when its spans are divided further. The error
-//! of a minimum variation curve falls by a factor of 15 to 250 when all elements are halved, that of a minimum energy
-//! curve by 10 (measured against true curves); counted is a factor of [`HALVING`]. So if a span moves by `d`, its
-//! error was at most `d · HALVING/(HALVING − 1)` and is at most `d / (HALVING − 1)` afterwards. This is an estimate,
-//! not a bound. Only spans that are too far off are divided.
+//! A curve's distance from the true minimum is estimated from how far it moves when its spans are divided further. The
+//! error of a minimum variation curve falls by a factor of 15 to 250 when all elements are halved, that of a minimum
+//! energy curve by 10 (measured against true curves); counted is a factor of [`HALVING`]. So if a span moves by `d`,
+//! its error was at most `d · HALVING/(HALVING − 1)` and is at most `d / (HALVING − 1)` afterwards. This is an
+//! estimate, not a bound. Only spans that are too far off are divided.
 //!
-//! Of a planar curve through fixed joints the true curve itself is known (see [`super::natural`]): then spans are divided until
-//! the elements along it are as near as they are to be, and their distance is measured.
+//! Of a planar curve through fixed joints the true curve itself is known (see [`super::natural`]): then spans are
+//! divided until the elements along it are as near as they are to be, and their distance is measured.
 
 use super::fairness::{Density, Shape};
 use super::model::{Division, Model};
@@ -83,8 +83,8 @@ pub(super) struct Aim {
     pub(super) relative_decrease: f64,
 }
 
-/// Divides spans until the estimated error is below the tolerance. `current` holds a solution and receives the result; `next` and
-/// `errors`, one number a span, are scratch.
+/// Divides spans until the estimated error is below the tolerance. `current` holds a solution and receives the result;
+/// `next` and `errors`, one number a span, are scratch.
 pub(super) fn divide<const D: usize>(
     passes: &mut Passes<'_>,
     of: &Model<'_, D>,

@@ -1,11 +1,11 @@
 //! What holds a curve of which nothing is fixed.
 //!
-//! A scale-invariant functional of such a curve does not change when the whole is moved, turned or scaled, nor, but for what
-//! quintics are coarser than curves, when its joints slide along it. Written in any coordinates these motions are bent, and away
-//! from a minimum a bent motion without effect looks like a negative curvature of the functional: steps would follow it instead
-//! of the shape. So two joints hold the curve. First they stand with their tangents, and the others move only across: what is
-//! left is the shape alone. Then all joints slide, one after the other and with the whole, whose steps leave the two in their
-//! places.
+//! A scale-invariant functional of such a curve does not change when the whole is moved, turned or scaled, nor, but for
+//! what quintics are coarser than curves, when its joints slide along it. Written in any coordinates these motions are
+//! bent, and away from a minimum a bent motion without effect looks like a negative curvature of the functional: steps
+//! would follow it instead of the shape. So two joints hold the curve. First they stand with their tangents, and the
+//! others move only across: what is left is the shape alone. Then all joints slide, one after the other and with the
+//! whole, whose steps leave the two in their places.
 
 use super::joint::{Curve, Given, Joint, Quantity};
 use super::options::Options;

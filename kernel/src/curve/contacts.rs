@@ -1,9 +1,9 @@
 //! Keeping clear of obstacles: which contacts a curve needs.
 //!
-//! The curve is solved without contacts. While an obstacle's end, or a place on its segment, is too near to it or on the
-//! wrong side, the worst such place becomes a contact, a node of the curve that touches it, and the curve is solved again.
-//! A contact that pulls, where the functional would sink if the curve moved away from the obstacle, is given up and stays an
-//! ordinary node. The sets never repeat in practice; their number is bounded all the same.
+//! The curve is solved without contacts. While an obstacle's end, or a place on its segment, is too near to it or on
+//! the wrong side, the worst such place becomes a contact, a node of the curve that touches it, and the curve is solved
+//! again. A contact that pulls, where the functional would sink if the curve moved away from the obstacle, is given up
+//! and stays an ordinary node. The sets never repeat in practice; their number is bounded all the same.
 
 use super::end::{End, rows_between};
 use super::fairness::{Density, Shape};
@@ -40,7 +40,8 @@ pub(super) struct Extended<'m, 'a, const D: usize> {
 }
 
 impl<const D: usize> Extended<'_, '_, D> {
-    /// The most dofs of a node that is added (a point, its tangent and curvature), and of its element (speeds and stretches).
+    /// The most dofs of a node that is added (a point, its tangent and curvature), and of its element (speeds and
+    /// stretches).
     const ADDED: usize = 2 * D;
 
     /// The most dofs of any block.
@@ -169,8 +170,8 @@ struct Foot<const D: usize> {
 }
 
 impl<const D: usize> Foot<D> {
-    /// The foot of a point on a chain of elements; `None` where the nearest place is an end of an open curve that it does not
-    /// pass.
+    /// The foot of a point on a chain of elements; `None` where the nearest place is an end of an open curve that it
+    /// does not pass.
     fn of(model: &Model<'_, D>, state: &[f64], point: &SVector<f64, D>) -> Option<Self>
     where
         Shape<D>: Density<D>,

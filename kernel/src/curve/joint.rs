@@ -158,8 +158,8 @@ pub struct Curve<'a> {
 /// So that the same parameter means the same place, the speed's relative change along an element is held to the reference's
 /// (by a term that is `α` times the functional's natural size; it is no part of the value that is reported).
 ///
-/// With `α = 1` and the reference's own joints the curve is the reference; joints that move deform it. As `α` sinks to 0 the
-/// curve becomes the minimum variation curve: a smoothing.
+/// With `α = 1` and the reference's own joints the curve is the reference; joints that move deform it. As `α` sinks to
+/// 0 the curve becomes the minimum variation curve: a smoothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference<'a> {
     /// The reference: as many elements as the curve has.

@@ -30,8 +30,8 @@ pub fn minima(
     minima_as(curve, options, workspace, elements, reports, |report| *report, figures, observer)
 }
 
-/// [`minima`] into reports of another form, which can be made of ours. `figures` tells value, length and bending of one that
-/// was made; it is asked of no other.
+/// [`minima`] into reports of another form, which can be made of ours. `figures` tells value, length and bending of one
+/// that was made; it is asked of no other.
 ///
 /// # Errors
 /// As [`minima`].

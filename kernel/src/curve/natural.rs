@@ -71,7 +71,8 @@ fn task<const D: usize>(model: &Model<'_, D>, length: Option<f64>) -> (Weigh, La
 pub(super) struct Improved {
     /// The tension that meets a given length; 0 without one.
     pub(super) tension: f64,
-    /// The weighed integrals of the curve that the elements run along, and by how much, about, they exceed the least there is.
+    /// The weighed integrals of the curve that the elements run along, and by how much, about, they exceed the least
+    /// there is.
     pub(super) integral: f64,
     pub(super) left_out: f64,
     /// By how much those of the elements exceed the curve's, about.
@@ -94,8 +95,8 @@ pub(super) struct Wish {
 }
 
 /// Improves the start values of a planar curve with one element a span whose joints all stand fixed: directions and
-/// curvatures at the joints, and the speeds. Returns nothing, and leaves the state untouched, where it does not apply or does
-/// not settle.
+/// curvatures at the joints, and the speeds. Returns nothing, and leaves the state untouched, where it does not apply
+/// or does not settle.
 ///
 /// `memory` holds [`memory_len`] numbers.
 pub(super) fn improve<const D: usize>(

@@ -24,8 +24,8 @@ pub struct Options {
     /// into at most `elements_per_span` elements each. 0 takes just `elements_per_span`. Default 0.
     pub tolerance: f64,
     /// Gauss–Lobatto points an element, 12 to 32; 0 takes 16 as long as no more are needed and 32 where they tell a
-    /// difference. Fewer than 20 can be cheated by an optimiser, which shows when the result is measured. Space curves whose
-    /// torsion counts take 32 at once. Default 0.
+    /// difference. Fewer than 20 can be cheated by an optimiser, which shows when the result is measured. Space curves
+    /// whose torsion counts take 32 at once. Default 0.
     pub quadrature_points: u32,
     /// The largest number of iterations (trial steps). Default 500.
     pub max_iterations: u32,
@@ -36,7 +36,9 @@ pub struct Options {
     /// starts. It leads to the minimum of shortest length where start values alone lead elsewhere. At most 16. Default 0.
     pub continuation: u32,
     /// The curve has converged when a Newton step promises to lower the functional by less than this fraction, or when
-    /// 20 iterations together lowered it by less than a thousand times that; up to two more steps polish it. 0 asks for
+    /// 20 iterations together lowered it by less than a thousand times that; up to two more steps polish it. Above
+    /// 1e-9 it has, too, when no step as long as an element's speed promises more, though the Hessian is not positive
+    /// definite; and no other minima of single elements are looked for. 0 asks for
     /// as much as the arithmetic gives. Default 1e-12.
     pub relative_decrease: f64,
 }

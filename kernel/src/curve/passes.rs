@@ -99,8 +99,8 @@ impl<'a> Passes<'a> {
         }
     }
 
-    /// Notes an iteration of the curve's directions: the functional, in the local unit, and how far it went. Returns whether
-    /// to go on.
+    /// Notes an iteration of the curve's directions: the functional, in the local unit, and how far it went. Returns
+    /// whether to go on.
     fn note(&mut self, value: f64, step: f64) -> bool {
         if self.iterations >= self.most {
             return false;
@@ -151,8 +151,8 @@ impl<'a> Passes<'a> {
         self.finish(model, relative_decrease, state, work)
     }
 
-    /// The last pass, from a state that has the right shape already. A given length is met here. A curve of which nothing is fixed
-    /// first gets its shape, then its joints slide along it.
+    /// The last pass, from a state that has the right shape already. A given length is met here. A curve of which
+    /// nothing is fixed first gets its shape, then its joints slide along it.
     pub(super) fn finish<const D: usize>(
         &mut self,
         model: &mut Model<'_, D>,
@@ -188,8 +188,8 @@ impl<'a> Passes<'a> {
         self.finish_with(model, relative_decrease, state, work)
     }
 
-    /// The last pass of a functional that knows torsion: softened as long as the curve has an inflection, and exactly where it
-    /// has none.
+    /// The last pass of a functional that knows torsion: softened as long as the curve has an inflection, and exactly
+    /// where it has none.
     fn finish_in_space<const D: usize>(
         &mut self,
         model: &mut Model<'_, D>,
@@ -358,8 +358,8 @@ impl<'a> Passes<'a> {
         })
     }
 
-    /// Takes elements that run along a known curve as they are, if what they exceed the least integral by is no more than is
-    /// asked for: what the curve does, and what they exceed it by, as measured and as estimated.
+    /// Takes elements that run along a known curve as they are, if what they exceed the least integral by is no more
+    /// than is asked for: what the curve does, and what they exceed it by, as measured and as estimated.
     pub(super) fn accept<const D: usize>(
         &self,
         model: &Model<'_, D>,

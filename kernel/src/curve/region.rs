@@ -51,9 +51,9 @@ impl Joint {
 /// # Ok::<(), minvar::curve::CurveError>(())
 /// ```
 ///
-/// The functional is the region's own. For MVC and MEC, with a tension or a bending term or without, a region of a minimum
-/// whose joints did not move comes out as it was. Scale-invariant functionals and a given length look at the region's length
-/// alone, and the space functionals leave its torsion free at both ends: these move it.
+/// The functional is the region's own. For MVC and MEC, with a tension or a bending term or without, a region of a
+/// minimum whose joints did not move comes out as it was. Scale-invariant functionals and a given length look at the
+/// region's length alone, and the space functionals leave its torsion free at both ends: these move it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region<'a> {
     /// The whole curve: its elements in order.

@@ -40,9 +40,9 @@ pub struct Report {
     pub variation: f64,
     /// The bending energy `E = ∫ κ² ds`.
     pub bending: f64,
-    /// The largest component of the functional's gradient by the unknowns, each times the unknown's natural size,
-    /// as a fraction of the functional; infinite where little was asked for (a `relative_decrease` above 1e-9) and no step of
-    /// the elements was needed for it.
+    /// The largest component of the functional's gradient by the unknowns, each times the unknown's natural size, as a
+    /// fraction of the functional; infinite where little was asked for (a `relative_decrease` above 1e-9) and no step
+    /// of the elements was needed for it.
     pub gradient: f64,
     /// The decrease of the functional that another Newton step would promise; infinite where the Hessian is not
     /// positive definite. Where no step was needed: an estimate of what the functional exceeds the true curve's by.

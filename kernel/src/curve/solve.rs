@@ -66,12 +66,12 @@ fn look_over(curve: &Curve<'_>, options: &Options) -> Result<Place, CurveError> 
 /// Computes a curve (thesis chapter 4).
 ///
 /// `workspace` needs [`workspace_len`] numbers in any condition, `elements` receives [`elements_len`] elements in
-/// order along the curve, or fewer with a tolerance; more room is left untouched. `records` receives one record an iteration
-/// as far as it reaches. Fixed positions and tangent directions are kept exactly; planar data give elements exactly in their
-/// plane where that is parallel to a coordinate plane, else to rounding.
+/// order along the curve, or fewer with a tolerance; more room is left untouched. `records` receives one record an
+/// iteration as far as it reaches. Fixed positions and tangent directions are kept exactly; planar data give elements
+/// exactly in their plane where that is parallel to a coordinate plane, else to rounding.
 ///
-/// With a reference shape the search starts from that shape. A curve of which nothing is fixed, and whose functional does not look
-/// at size, stays about where its start values are.
+/// With a reference shape the search starts from that shape. A curve of which nothing is fixed, and whose functional
+/// does not look at size, stays about where its start values are.
 ///
 /// # Errors
 /// Whatever is wrong with data, options or memory, found before any work; `elements` is untouched then.
@@ -89,10 +89,10 @@ pub fn solve(
 /// Computes a curve anew from its last solution: a *warm start* for data that changed a little, as when a joint is
 /// dragged.
 ///
-/// As [`solve()`], but `elements` holds the last solution, [`elements_len`] elements, from which the search starts; what the
-/// joints fix is taken from the joints. The search ends in the minimum that belongs to the last solution, so that a
-/// curve does not jump while it is dragged. A tolerance is not looked at: the number of elements stays. If nothing is
-/// found, the status says so and the elements are the last shape.
+/// As [`solve()`], but `elements` holds the last solution, [`elements_len`] elements, from which the search starts;
+/// what the joints fix is taken from the joints. The search ends in the minimum that belongs to the last solution, so
+/// that a curve does not jump while it is dragged. A tolerance is not looked at: the number of elements stays. If
+/// nothing is found, the status says so and the elements are the last shape.
 ///
 /// # Errors
 /// As [`solve()`], [`CurveError::ElementsTooShort`] and [`CurveError::BadElement`].
@@ -421,8 +421,8 @@ where
     Ok(())
 }
 
-/// Keeps a solution with one element a span clear of its obstacles, if there are any, divides it and hands it over. `memory`
-/// is state, next state, marks, next marks and contacts.
+/// Keeps a solution with one element a span clear of its obstacles, if there are any, divides it and hands it over.
+/// `memory` is state, next state, marks, next marks and contacts.
 fn clear<const D: usize>(
     passes: &mut Passes<'_>,
     model: &Model<'_, D>,

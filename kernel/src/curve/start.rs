@@ -23,7 +23,8 @@ const SPEED_BY_TURN: f64 = 0.00613;
 const STRETCH_BY_TURN: f64 = 0.0377;
 /// The speeds that are tried, the preferred first; another must be twice as fair.
 const SPEED_FACTORS: [f64; 5] = [1.0, 0.6, 1.6, 0.36, 2.5];
-/// A start tangent that leans from a given curvature by less than this (radians) does not tell on which side the curve goes.
+/// A start tangent that leans from a given curvature by less than this (radians) does not tell on which side the curve
+/// goes.
 const UNDECIDED: f64 = 1e-6;
 /// The cosine of an angle that counts as none is within this of 1; its square, of a sine that counts as none, below it.
 const STRAIGHT: f64 = 1e-6;
@@ -75,8 +76,8 @@ fn frame_of<const D: usize>(tangent: &SVector<f64, D>, curvature: &SVector<f64, 
     frame
 }
 
-/// A span whose tangents turn by less than this together against the chord, and whose curvatures are less than this over it, has
-/// neither cusp nor loop.
+/// A span whose tangents turn by less than this together against the chord, and whose curvatures are less than this
+/// over it, has neither cusp nor loop.
 const GENTLE_TURN: f64 = 1.5;
 const GENTLE_BEND: f64 = 4.0;
 

@@ -110,8 +110,8 @@ pub(super) const NO_COST: f64 = 1e-20;
 const KEPT: f64 = 0.9;
 /// Before the first step elements are relaxed until one promises less than this part of the tolerance.
 const ENOUGH: f64 = 0.1;
-/// Before the first step loose blocks are relaxed one after the other, so many times at most, until once all round lowers the
-/// objective by less than so many tolerances.
+/// Before the first step loose blocks are relaxed one after the other, so many times at most, until once all round
+/// lowers the objective by less than so many tolerances.
 const MOST_SWEEPS: usize = 8;
 const SWEPT: f64 = 1e3;
 /// How often other starts of the elements' own unknowns may lead to a better minimum.
@@ -234,14 +234,21 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                 outcome.decrement = f64::INFINITY;
             }
             // A cost far below what is natural for the size is zero to the user, however it goes on relatively. Only a
-            // Newton step tells how far the minimum is: one that ends at the radius says no more than that.
+            // Newton step tells how far the minimum is: one that ends at the radius says no more than that. Who asks for
+            // little is content if one as long as a natural size an element would gain as little, curved as it is.
             let little = settings.relative_decrease * (value + ZERO_COST * natural);
-            let near = step.predicted <= if step.shift == 0.0 { floor.max(little) } else { floor };
+            let stretch = root / step.length;
+            let near = step.predicted <= floor
+                || if step.shift == 0.0 {
+                    step.predicted <= little
+                } else {
+                    !tight && step.predicted * (stretch * stretch) <= little
+                };
             let last = near && (step.predicted <= POLISH_FLOOR * floor || polish == 0 || step.shift > 0.0);
             // A ball that shrank to nothing proves nothing; otherwise there is nothing left to gain.
             let whole = step.shift == 0.0 || radius.0 > 1e3 * least_radius;
-            // Other minima of the elements are looked for as soon as a step promises less than they must gain: digits that were
-            // found before would be found in vain.
+            // Other minima of the elements are looked for as soon as a step promises less than they must gain: digits
+            // that were found before would be found in vain.
             let settled = step.shift == 0.0 && step.predicted <= relax::BETTER * value;
             let moved = explored - value > relax::BETTER * value;
             if explorations > 0 && moved && (settled || (last && whole)) {

@@ -1,8 +1,8 @@
 //! Relaxing a loose block together with the elements that touch it.
 //!
-//! A point that is free to slide along a curve has a valley of its own, long, curved and all but level: one trust region for
-//! all would follow it in steps as short as the valley is bent. Held between its neighbours, a loose block and what its
-//! elements share with no other block are few unknowns, and follow it by themselves.
+//! A point that is free to slide along a curve has a valley of its own, long, curved and all but level: one trust
+//! region for all would follow it in steps as short as the valley is bent. Held between its neighbours, a loose block
+//! and what its elements share with no other block are few unknowns, and follow it by themselves.
 
 use super::descent::{Derivatives, Descent, Varied};
 use super::problem::{BlockList, Problem, packed_len};
@@ -10,8 +10,8 @@ use super::relax::{is_private, totals};
 use super::workspace::{Indices, Workspace};
 use core::ops::Range;
 
-/// Takes up to `steps` steps in every patch of the trial state, one after the other, until a step promises to lower the objective
-/// by less than `enough`. `work.spare` is scratch. Returns how often an element was linearised.
+/// Takes up to `steps` steps in every patch of the trial state, one after the other, until a step promises to lower the
+/// objective by less than `enough`. `work.spare` is scratch. Returns how often an element was linearised.
 pub(super) fn relax<P: Problem + ?Sized>(
     problem: &P,
     work: &mut Workspace<'_>,

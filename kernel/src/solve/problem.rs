@@ -148,8 +148,8 @@ pub trait Problem: Sync {
     /// Moves a block from `from` by `step` in its tangent space. `from` and `to` are the block's own ranges.
     fn retract(&self, block: usize, from: &[f64], step: &[f64], to: &mut [f64]);
 
-    /// Whether a block may move far along a curved valley at hardly any cost, as a point does that slides along a curve: it is
-    /// relaxed together with what its elements share with no other block.
+    /// Whether a block may move far along a curved valley at hardly any cost, as a point does that slides along a
+    /// curve: it is relaxed together with what its elements share with no other block.
     fn is_loose(&self, block: usize) -> bool {
         let _ = block;
         false
@@ -161,8 +161,8 @@ pub trait Problem: Sync {
         0
     }
 
-    /// How many of a block's first unknowns no step of the whole moves, though its own relaxation does: those that hold a shape
-    /// in its place of which nothing is fixed.
+    /// How many of a block's first unknowns no step of the whole moves, though its own relaxation does: those that hold
+    /// a shape in its place of which nothing is fixed.
     fn held(&self, block: usize) -> usize {
         let _ = block;
         0

@@ -182,7 +182,8 @@ pub(super) struct Workspace<'a> {
     pub(super) slot_len: usize,
 }
 
-/// Whole numbers kept as the bits of a slice of `f64`, so that a caller hands over one kind of memory: nothing is converted.
+/// Whole numbers kept as the bits of a slice of `f64`, so that a caller hands over one kind of memory: nothing is
+/// converted.
 pub(crate) struct Indices<'a>(&'a mut [f64]);
 
 impl<'a> Indices<'a> {

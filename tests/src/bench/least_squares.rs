@@ -206,8 +206,8 @@ fn solution(
     Ok((*value, elements))
 }
 
-/// Puts those first that take part in the race, and returns how many they are: who reached the minimum and is not much slower
-/// than the fastest; if nobody did, who came nearest to it.
+/// Puts those first that take part in the race, and returns how many they are: who reached the minimum and is not much
+/// slower than the fastest; if nobody did, who came nearest to it.
 fn choose(
     task: &Task,
     ways: &mut [Way],
@@ -228,8 +228,8 @@ fn choose(
     Ok(racers)
 }
 
-/// Checks and times those that may take part, fastest first by what their history promises, until the rest is too slow; puts
-/// the good ones first.
+/// Checks and times those that may take part, fastest first by what their history promises, until the rest is too slow;
+/// puts the good ones first.
 fn heat(
     task: &Task,
     ways: &mut [Way],

@@ -170,8 +170,8 @@ impl Task {
         (self.fine_value(elements) - value).abs() <= 1e-4 * value
     }
 
-    /// The start values of minvar, before it has done anything: its tangents and shared curvatures, and speeds and stretches
-    /// of the quintic that fits a circular arc best (`kernel/src/curve/start.rs`).
+    /// The start values of minvar, before it has done anything: its tangents and shared curvatures, and speeds and
+    /// stretches of the quintic that fits a circular arc best (`kernel/src/curve/start.rs`).
     ///
     /// Stopped before its first iteration minvar has explored what each element shares with no other. That is work that no
     /// peer should be given for nothing, so it is replaced by where it started from.

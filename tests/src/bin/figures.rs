@@ -1,5 +1,5 @@
-//! Draws the figures of thesis chapter 4 and writes the page that shows them, with Table 4.1 computed anew and the iterations:
-//! `figures [DIRECTORY]`, by default `docs/figures`. `make figures`.
+//! Draws the figures of thesis chapter 4 and writes the page that shows them, with Table 4.1 computed anew and the
+//! iterations: `figures [DIRECTORY]`, by default `docs/figures`. `make figures`.
 
 use minvar_tests::figures::{all, page, table};
 use minvar_tests::iterations;

@@ -3,9 +3,9 @@
 //! `random [--count N] [--seed N] [--functional mvc,mec] [--only K] [--list] [--images none|one|all] [--examine N]
 //! [--threads N] [--elements-per-span N] [--spiro PROGRAM] [--occt PROGRAM]`
 //!
-//! Every result is judged by itself. Besides, each problem is solved moved, scaled, turned, reversed or restarted: once, by its
-//! number, or in all these ways, or not. Of each status but *converged*, `--examine` results are looked at for a minimum that
-//! other ways find. The peers are built from `tests/peers`.
+//! Every result is judged by itself. Besides, each problem is solved moved, scaled, turned, reversed or restarted:
+//! once, by its number, or in all these ways, or not. Of each status but *converged*, `--examine` results are looked at
+//! for a minimum that other ways find. The peers are built from `tests/peers`.
 //!
 //! With `--only K` the problem is solved, judged and written as a constraint file to the standard output, for
 //! `minvar curve FILE --svg PICTURE`. Exit status 1: a promise was broken; 2: wrong arguments.

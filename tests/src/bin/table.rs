@@ -1,6 +1,6 @@
 //! Prints Appendix A solved: the published coefficients, minvar's and the reference's, all measured by the same
-//! independent quadrature, with as many elements a span as the published curve; then the iterations from the data alone. `make
-//! table`.
+//! independent quadrature, with as many elements a span as the published curve; then the iterations from the data
+//! alone. `make table`.
 
 use minvar_tests::appendix::figures;
 use minvar_tests::ceres::{Functional, Measure, evaluate};

@@ -131,8 +131,8 @@ impl Check {
         }
     }
 
-    /// Whether it must never be beyond what is allowed. The others may be: a functional has several minima, and which one is
-    /// found may hang by rounding; they are counted.
+    /// Whether it must never be beyond what is allowed. The others may be: a functional has several minima, and which
+    /// one is found may hang by rounding; they are counted.
     pub const fn is_promise(self) -> bool {
         !matches!(
             self,

@@ -84,8 +84,8 @@ impl<'a> Comparison<'a> {
         self.near.get_or_init(solve).as_ref()
     }
 
-    /// Solves an image, notes how its result differs, and returns its report; `None` where there is nothing to compare or the
-    /// data are refused, which is noted.
+    /// Solves an image, notes how its result differs, and returns its report; `None` where there is nothing to compare
+    /// or the data are refused, which is noted.
     pub fn with(&self, image: Image, dice: &mut Dice, findings: &mut Findings) -> Option<Report> {
         let (problem, power) = (self.problem, power(self.options.functional));
         let two = libm::exp2(dice.count(0, 40) as f64 - 20.0);

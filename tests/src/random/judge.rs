@@ -104,9 +104,9 @@ pub fn judge(
     measured
 }
 
-/// Fixed positions to the last bit, tangents to 1e-12, curvatures to 1e-9 beside what rounding leaves of them: of `C''`, and of
-/// the direction in which it points, which is a difference of points: a curve that turns by less than rounding from one end
-/// of an element to the other is straight.
+/// Fixed positions to the last bit, tangents to 1e-12, curvatures to 1e-9 beside what rounding leaves of them: of
+/// `C''`, and of the direction in which it points, which is a difference of points: a curve that turns by less than
+/// rounding from one end of an element to the other is straight.
 fn constraints(problem: &Problem, elements: &[Element], findings: &mut Findings) {
     let count = problem.joints.len();
     for (i, joint) in problem.joints.iter().enumerate() {

@@ -130,8 +130,8 @@ fn piece(element: &Element, from: f64, to: f64, blur: f64) -> Sums {
 struct Blur {
     /// By rounding of what they are made of: positions too, however far they are from the origin.
     rows: f64,
-    /// The square of the share of it that is left within the element, where only the chord counts: what an evaluation makes of
-    /// rows that are taken as they stand.
+    /// The square of the share of it that is left within the element, where only the chord counts: what an evaluation
+    /// makes of rows that are taken as they stand.
     own: f64,
 }
 
@@ -203,7 +203,8 @@ pub fn sharpest_turn(elements: &[Element]) -> f64 {
     most
 }
 
-/// The largest ratio of an element's mean speed to its least: an element that nearly stops hides a sharp bend from any rule.
+/// The largest ratio of an element's mean speed to its least: an element that nearly stops hides a sharp bend from any
+/// rule.
 pub fn slowest(elements: &[Element]) -> f64 {
     const PLACES: usize = 256;
     let mut most = 1.0f64;

@@ -1,6 +1,6 @@
-//! The same problems for other programs: libspiro takes points in the plane, OpenCASCADE's `FairCurve_MinimalVariation` two
-//! points with end tangents. Each reads problems as lines and answers in lines (`tests/peers`); all are given the problem near
-//! the origin, where they do best.
+//! The same problems for other programs: libspiro takes points in the plane, OpenCASCADE's `FairCurve_MinimalVariation`
+//! two points with end tangents. Each reads problems as lines and answers in lines (`tests/peers`); all are given the
+//! problem near the origin, where they do best.
 
 use super::judge::polygon;
 use super::problem::Problem;
@@ -124,8 +124,8 @@ fn ours(outcomes: &[&Outcome]) {
     line("minvar", outcomes.len(), [said, true_, gentle, of_gentle], time);
 }
 
-/// libspiro on the planar problems of points alone. True is what passes all points to 1e-6 of the size, is finite and is not
-/// fifty times as long as the polygon.
+/// libspiro on the planar problems of points alone. True is what passes all points to 1e-6 of the size, is finite and
+/// is not fifty times as long as the polygon.
 ///
 /// # Errors
 /// The program cannot be run or answers nonsense.

@@ -90,8 +90,9 @@ impl Problem {
         Curve::new(&self.joints, self.closed)
     }
 
-    /// Whether an energy (MEC) has a minimum here and not only an infimum. A curvature that is fixed costs an energy nothing
-    /// if the curve leaves it at once, ever more sharply; so does the common curvature of a G2 joint whose tangent is fixed.
+    /// Whether an energy (MEC) has a minimum here and not only an infimum. A curvature that is fixed costs an energy
+    /// nothing if the curve leaves it at once, ever more sharply; so does the common curvature of a G2 joint whose
+    /// tangent is fixed.
     pub fn has_least_energy(&self) -> bool {
         let count = self.plain.len();
         self.plain.iter().enumerate().all(|(i, joint)| {
@@ -102,8 +103,8 @@ impl Problem {
         })
     }
 
-    /// Whether nobody would call the data wild: no two steps beside each other differ by more than a factor of four, neighbouring
-    /// chords turn by no more than 75 degrees, and no tangent leaves its chord by more than that.
+    /// Whether nobody would call the data wild: no two steps beside each other differ by more than a factor of four,
+    /// neighbouring chords turn by no more than 75 degrees, and no tangent leaves its chord by more than that.
     pub fn is_gentle(&self) -> bool {
         let joints: Vec<&Joint> = self.plain.iter().filter(|j| j.position.given != Given::FREE).collect();
         let count = joints.len();

@@ -194,8 +194,8 @@ fn smooth(dice: &mut Dice, family: Family) -> Samples {
     Samples { list, closed, planar: !space }
 }
 
-/// Tangents along the bisectors of points, leant by up to `lean`, with curvatures of up to `bend` over the nearer neighbour's
-/// distance.
+/// Tangents along the bisectors of points, leant by up to `lean`, with curvatures of up to `bend` over the nearer
+/// neighbour's distance.
 fn with_guesses(
     dice: &mut Dice,
     points: &[Vector],

@@ -50,8 +50,8 @@ pub fn examine(problem: &Problem, options: &Options) -> Examined {
     Examined { own, reference }
 }
 
-/// By which fraction the reference's minimum is lower than the solver's; `None` where the reference cannot be asked or finds
-/// none.
+/// By which fraction the reference's minimum is lower than the solver's; `None` where the reference cannot be asked or
+/// finds none.
 pub fn excess(problem: &Problem, options: &Options) -> Option<f64> {
     if !is_small(problem) {
         return None;
@@ -63,8 +63,8 @@ pub fn excess(problem: &Problem, options: &Options) -> Option<f64> {
     Some((report.value - lower.value - floor).max(0.0) / report.value.max(f64::MIN_POSITIVE))
 }
 
-/// Looks for a minimum with the solver's own means: more elements, more iterations, another functional's result as the start,
-/// every start tangent along the polygon.
+/// Looks for a minimum with the solver's own means: more elements, more iterations, another functional's result as the
+/// start, every start tangent along the polygon.
 fn other_minimum(problem: &Problem, options: &Options) -> Option<Minimum> {
     let try_with = |way: &'static str, joints: &[Joint], options: &Options| {
         let (report, elements) = solve_curve(joints, problem.closed, options).ok()?;

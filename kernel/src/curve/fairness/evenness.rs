@@ -1,5 +1,6 @@
-//! The evenness of a parametrisation, `∫ (d ln|C'|/dt − e)² dt = ∫ (q/p − e)² dt`: no property of the shape. With `e = 0` it is
-//! 0 where the parameter is proportional to the arc length, with `e` of another curve where it is to that of the other.
+//! The evenness of a parametrisation, `∫ (d ln|C'|/dt − e)² dt = ∫ (q/p − e)² dt`: no property of the shape. With `e =
+//! 0` it is 0 where the parameter is proportional to the arc length, with `e` of another curve where it is to that of
+//! the other.
 
 use super::Local;
 use crate::basis::lanes::Lanes;

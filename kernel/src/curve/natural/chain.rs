@@ -130,8 +130,8 @@ fn angle<const D: usize>(a: &SVector<f64, D>, b: &SVector<f64, D>) -> f64 {
 }
 
 impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
-    /// The chain of a curve with one element a span, from its state; the span `bent`, if any, closed the second-nearest way.
-    /// `None` where a span cannot be closed. `memory` holds [`memory_len`] numbers.
+    /// The chain of a curve with one element a span, from its state; the span `bent`, if any, closed the second-nearest
+    /// way. `None` where a span cannot be closed. `memory` holds [`memory_len`] numbers.
     pub(super) fn of<const D: usize>(
         tables: &'static Tables<N, C>,
         model: &Model<'_, D>,
@@ -251,8 +251,8 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
         Span::load(&self.spans[index * stride(N) + 4..])
     }
 
-    /// A joint's end of a span, from what it was: its point stands, and its tangent where that is given. `along` is the chord's
-    /// direction.
+    /// A joint's end of a span, from what it was: its point stands, and its tangent where that is given. `along` is the
+    /// chord's direction.
     pub(super) fn joint_end<const D: usize>(
         &self,
         index: usize,
@@ -343,7 +343,8 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
         let start_length = self.length();
         for _ in 0..effort.iterations {
             if let Law::Power(power) = law {
-                // The tension that belongs to the curve as it stands: one that lags behind pulls now too much, now too little.
+                // The tension that belongs to the curve as it stands: one that lags behind pulls now too much, now too
+                // little.
                 let own = self.integral(&Weigh { length: 0.0, ..*weigh });
                 weigh.length = power * own / self.length();
             }
@@ -458,8 +459,8 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
                     of_value * (along(step) - weigh.length * change) + of_length * change
                 };
                 let (plain, pulled) = (with(self.step, change[0]), with(self.pulled, change[1]));
-                // The denominator is positive where the whole is positive definite. Under a tension that stands a step always
-                // goes down, for the logarithm is concave: a tension that moves hastens it, and only so much.
+                // The denominator is positive where the whole is positive definite. Under a tension that stands a step
+                // always goes down, for the logarithm is concave: a tension that moves hastens it, and only so much.
                 (power * value / length - weigh.length + plain) / (1.0 - pulled).max(LEAST_HOLD)
             }
         };

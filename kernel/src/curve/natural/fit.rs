@@ -1,10 +1,10 @@
 //! The quintic that runs along a known curve: its speeds and stretches, by least squares.
 //!
-//! Positions, tangents and curvatures at the ends are the known curve's; of a quintic's freedoms that leaves `v` and `β` at
-//! either end. They are chosen so that `dκ/ds` (for an energy: `κ`) differs least from the known curve's at the same fraction
-//! of the arc length, in the mean square. A curve that is a minimum has no slope, so this difference is, to first order, by
-//! what the quintic's functional exceeds the known curve's: no other quintic with these ends has much less. What is left over
-//! is small, so that two steps by Gauss and Newton are mostly enough.
+//! Positions, tangents and curvatures at the ends are the known curve's; of a quintic's freedoms that leaves `v` and
+//! `β` at either end. They are chosen so that `dκ/ds` (for an energy: `κ`) differs least from the known curve's at the
+//! same fraction of the arc length, in the mean square. A curve that is a minimum has no slope, so this difference is,
+//! to first order, by what the quintic's functional exceeds the known curve's: no other quintic with these ends has
+//! much less. What is left over is small, so that two steps by Gauss and Newton are mostly enough.
 
 use super::functions::slopes;
 use crate::basis::hermite;
@@ -25,8 +25,8 @@ const MOST_STEPS: usize = 8;
 const SETTLED: f64 = 1e-2;
 /// A difference that is this part of what is compared is none.
 const NOTHING: f64 = 1e-10;
-/// Where more than this part of what is compared is left over, other starts are tried: the logarithms of the ratio between the
-/// speed at the first end and that in the middle.
+/// Where more than this part of what is compared is left over, other starts are tried: the logarithms of the ratio
+/// between the speed at the first end and that in the middle.
 const TELLING: f64 = 1e-6;
 const SKEWS: [f64; 2] = [0.3, -0.3];
 /// The same from the last solution's speeds, times this.
@@ -134,9 +134,10 @@ impl<const N: usize> Known<'_, N> {
     }
 }
 
-/// Gives the ends of a planar element the speeds and stretches with which it runs along a known curve, from those that they
-/// have. `varies` tells whether `dκ/ds` is compared, or `κ`; a misfit that is the part `enough` of what is compared will do; a
-/// `warm` start is followed alone unless it leads to much. Returns the integral of the squared difference.
+/// Gives the ends of a planar element the speeds and stretches with which it runs along a known curve, from those that
+/// they have. `varies` tells whether `dκ/ds` is compared, or `κ`; a misfit that is the part `enough` of what is
+/// compared will do; a `warm` start is followed alone unless it leads to much. Returns the integral of the squared
+/// difference.
 pub(super) fn fit<const D: usize, const N: usize>(
     ends: &mut [End<D>; 2],
     known: &Known<'_, N>,

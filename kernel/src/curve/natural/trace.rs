@@ -89,8 +89,8 @@ impl TrueCurve<'_> {
         LAST_INTEGRAL * last * span.length()
     }
 
-    /// Writes elements along the curve, so many equal parts a span as `counts` says, into the state of `fine`, the same curve
-    /// with so many elements. Returns their natural cost.
+    /// Writes elements along the curve, so many equal parts a span as `counts` says, into the state of `fine`, the same
+    /// curve with so many elements. Returns their natural cost.
     pub(in crate::curve) fn write<const D: usize>(
         &self,
         coarse: &Model<'_, D>,
