@@ -6,12 +6,41 @@
 //! would follow it instead of the shape. So two joints hold the curve. First they stand with their tangents, and the
 //! others move only across: what is left is the shape alone. Then all joints slide, one after the other and with the
 //! whole, whose steps leave the two in their places.
+//!
+//! Of a circle two tangents are tied to the chord between them, and a closed curve that turns round, of which nothing
+//! is fixed, becomes one. So only a planar curve is held that in all does not turn, like a figure-8.
 
+use super::fairness::{Density, Shape};
 use super::joint::{Curve, Given, Joint, Quantity};
+use super::model::Model;
+use super::natural::angle;
 use super::options::Options;
+use core::f64::consts::PI;
 
-/// The first joint, and the one farthest from it, where nothing else holds the curve.
-pub(super) fn anchors(curve: &Curve<'_>, options: &Options) -> Option<[usize; 2]> {
+/// The first joint, and the one farthest from it, where nothing holds a curve that does not turn in all.
+pub(super) fn anchors<const D: usize>(
+    model: &Model<'_, D>,
+    options: &Options,
+    state: &[f64],
+) -> Option<[usize; 2]>
+where
+    Shape<D>: Density<D>,
+{
+    let found = farthest(&model.curve, options)?;
+    if D != 2 || !model.curve.closed {
+        return None;
+    }
+    let mut turning = 0.0;
+    for element in 0..model.element_count() {
+        let ends = [model.end(element, 0, state), model.end(element, 1, state)];
+        let chord = ends[1].point - ends[0].point;
+        turning += angle(&ends[0].frame[0], &chord) + angle(&chord, &ends[1].frame[0]);
+    }
+    (turning.abs() < PI).then_some(found)
+}
+
+/// Two joints that are far from each other where nothing of a curve is fixed, nor its size.
+fn farthest(curve: &Curve<'_>, options: &Options) -> Option<[usize; 2]> {
     let keeps_size = options.functional.length_power() == 0 || options.length > 0.0;
     if keeps_size || curve.reference.is_some() || !curve.obstacles.is_empty() {
         return None;

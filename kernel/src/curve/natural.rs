@@ -24,6 +24,7 @@ mod functions;
 mod span;
 mod trace;
 
+pub(super) use chain::angle;
 pub(super) use trace::{TrueCurve, trace, trace_len};
 
 use super::fairness::{Density, Shape};

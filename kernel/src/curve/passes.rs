@@ -151,8 +151,8 @@ impl<'a> Passes<'a> {
         self.finish(model, relative_decrease, state, work)
     }
 
-    /// The last pass, from a state that has the right shape already. A given length is met here. A curve of which
-    /// nothing is fixed first gets its shape, then its joints slide along it.
+    /// The last pass, from a state that has the right shape already. A given length is met here. A curve that two
+    /// joints hold first gets its shape, then its joints slide along it.
     pub(super) fn finish<const D: usize>(
         &mut self,
         model: &mut Model<'_, D>,

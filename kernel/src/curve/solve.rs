@@ -198,7 +198,7 @@ fn model<'a, const D: usize>(curve: &Curve<'a>, options: &Options, place: &Place
         contacts: &[],
         gauge: 0.0,
         guarded: true,
-        anchors: anchors(curve, options),
+        anchors: None,
         slides: true,
         fitted: false,
         natural_cost: 0.0,
@@ -251,7 +251,8 @@ where
     coarse.natural_cost =
         Start { model: &coarse, place, parts: 1, turned: begin.turned(curve) }.fill(coarse_state)?;
     take_scale(&mut coarse, coarse_state);
-    model.space = coarse.space;
+    coarse.anchors = anchors(&coarse, options, coarse_state);
+    (model.space, model.anchors) = (coarse.space, coarse.anchors);
     coarse.start_length = coarse.rough_length(coarse_state);
     if options.continuation > 0 {
         under_tension(&mut passes, &mut coarse, options.continuation, coarse_state, work).map_err(wrong)?;
