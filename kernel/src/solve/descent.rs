@@ -177,3 +177,100 @@ impl<P: Problem + ?Sized> Descent<'_, P> {
         (sums, linearisations)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One element with two unknowns of its own; the objective is the product of two sums.
+    struct Product;
+
+    impl Problem for Product {
+        fn blocks(&self) -> usize {
+            1
+        }
+        fn dofs(&self, _: usize) -> usize {
+            2
+        }
+        fn state_range(&self, _: usize) -> Range<usize> {
+            0..2
+        }
+        fn state_len(&self) -> usize {
+            2
+        }
+        fn elements(&self) -> usize {
+            1
+        }
+        fn element_blocks(&self, _: usize, blocks: &mut BlockList) {
+            let _ = blocks.push(0);
+        }
+        fn max_element_dofs(&self) -> usize {
+            2
+        }
+        fn cost(&self, _: usize, state: &[f64]) -> f64 {
+            self.couple(self.sums(0, state)).value
+        }
+        fn linearise(&self, _: usize, _: &[f64], _: &mut [f64], _: &mut [f64]) -> f64 {
+            f64::NAN
+        }
+        fn is_coupled(&self) -> bool {
+            true
+        }
+        fn couple(&self, [one, other]: [f64; 2]) -> Coupled {
+            Coupled { value: one * other, first: [other, one], second: [[0.0, 1.0], [1.0, 0.0]] }
+        }
+        fn sums(&self, _: usize, state: &[f64]) -> [f64; 2] {
+            let (x, y) = (state[0], state[1]);
+            [2.0 + (x - 1.0) * (x - 1.0) + y * y, 2.0 + x * x + (y - 1.0) * (y - 1.0)]
+        }
+        fn linearise_own(
+            &self,
+            _: usize,
+            state: &[f64],
+            first: [f64; 2],
+            gradient: &mut [f64],
+            second: &mut [f64],
+            matrix: &mut [f64],
+        ) -> Option<[f64; 2]> {
+            let (x, y) = (state[0], state[1]);
+            second.copy_from_slice(&[2.0 * x, 2.0 * (y - 1.0)]);
+            let one = [2.0 * (x - 1.0), 2.0 * y];
+            for k in 0..2 {
+                gradient[k] = first[0] * one[k] + first[1] * second[k];
+                matrix[packed(k, k)] = 2.0 * (first[0] + first[1]);
+            }
+            Some(self.sums(0, state))
+        }
+        fn retract(&self, _: usize, from: &[f64], step: &[f64], to: &mut [f64]) {
+            (to[0], to[1]) = (from[0] + step[0], from[1] + step[1]);
+        }
+        fn natural_sizes(&self, _: usize, _: &[f64], sizes: &mut [f64]) {
+            sizes.fill(1.0);
+        }
+        fn natural_cost(&self) -> f64 {
+            1.0
+        }
+    }
+
+    /// By symmetry the minimum is at a half each. With the whole Hessian an error is squared in every step, and more: without
+    /// the part through the sums, or with another sign, it shrinks by a factor.
+    #[test]
+    fn what_sums_do_to_each_other_belongs_to_the_hessian() {
+        let mut varied = Varied::new();
+        varied.push(0, 2);
+        let (mut trial, mut spare, mut memory) = ([0.7, 0.4], [0.7, 0.4], [f64::NAN; 18]);
+        let descent = Descent { problem: &Product, varied: &varied, others: [0.0; 2], steps: 4, enough: 0.0 };
+        let sums = Product.sums(0, &trial);
+        let (found, steps) = descent.run(
+            [&mut trial, &mut spare],
+            &mut memory,
+            sums,
+            |state| Product.sums(0, state),
+            |state, first, [gradient, second, matrix]| {
+                Product.linearise_own(0, state, first, gradient, second, matrix).unwrap_or([f64::NAN; 2])
+            },
+        );
+        assert!(steps <= 4 && found == Product.sums(0, &trial), "{steps} {found:?}");
+        assert!((trial[0] - 0.5).abs() < 1e-10 && (trial[1] - 0.5).abs() < 1e-10, "{trial:?}");
+    }
+}
