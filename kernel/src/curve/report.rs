@@ -99,10 +99,8 @@ where
     let reach = figures.length / data_length(model);
     let lost = if reach >= SHOWN_GROWTH { Status::Unbounded } else { Status::Stalled };
     let gave_up = matches!(report.status, Status::IterationLimit | Status::Stalled);
-    if gave_up && reach >= SHOWN_GROWTH && growth > if passes.hurries() { GROWS } else { LONG_GROWTH } {
-        report.status = Status::Unbounded;
-    }
-    if report.status == Status::Unbounded {
+    let grows = growth > if passes.hurries() { GROWS } else { LONG_GROWTH };
+    if report.status == Status::Unbounded || (gave_up && reach >= SHOWN_GROWTH && grows) {
         report.status = lost;
     }
     if report.status == Status::Converged {

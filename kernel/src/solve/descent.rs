@@ -29,39 +29,79 @@ impl Varied {
             self.unknowns += dofs;
         }
     }
+}
 
-    /// Adds what an element's derivatives by all unknowns of its blocks are by those that vary.
-    pub(super) fn add<P: Problem + ?Sized>(
+/// Some elements of a problem, and which blocks vary.
+pub(super) struct Part<'a, 'w, P: ?Sized, I> {
+    pub(super) problem: &'a P,
+    /// How many unknowns each block has.
+    pub(super) dofs: &'a Indices<'w>,
+    pub(super) elements: I,
+    pub(super) varied: Varied,
+}
+
+impl<P: Problem + ?Sized, I: Iterator<Item = usize> + Clone> Part<'_, '_, P, I> {
+    pub(super) fn sums(&self, state: &[f64]) -> [f64; 2] {
+        let mut sums = [0.0; 2];
+        for element in self.elements.clone() {
+            let [own, second] = self.problem.sums(element, state);
+            sums[0] += own;
+            sums[1] += second;
+        }
+        sums
+    }
+
+    /// Adds up the elements' derivatives with these weights of the sums, and returns the sums; `slots` is room for one
+    /// element's.
+    pub(super) fn linearise(
         &self,
-        problem: &P,
-        dofs: &Indices<'_>,
-        list: &BlockList,
-        [all_gradient, all_second, all_matrix]: [&[f64]; 3],
+        state: &[f64],
+        first: [f64; 2],
+        slots: &mut [f64],
         [gradient, second, matrix]: Derivatives<'_>,
-    ) {
-        // The element's unknowns one after the other, each with its place among those that vary, if it does.
-        let places = || {
-            list.iter().flat_map(|&block| {
-                let found = self.blocks.iter().find(|varied| varied.0 == block).map(|varied| varied.1.start);
-                (0..dofs.get(block)).map(move |k| found.map(|from| from + k))
-            })
-        };
-        for (i, row) in places().enumerate() {
-            let Some(row) = row else { continue };
-            gradient[row] += all_gradient[i];
-            if problem.is_coupled() {
-                second[row] += all_second[i];
-            }
-            for (j, column) in places().enumerate().take(i + 1) {
-                if let Some(column) = column {
-                    matrix[packed(row.max(column), row.min(column))] += all_matrix[packed(i, j)];
+    ) -> [f64; 2] {
+        let Self { problem, dofs, varied, .. } = self;
+        let coupled = problem.is_coupled();
+        let mut sums = [0.0; 2];
+        for element in self.elements.clone() {
+            let mut list = BlockList::new();
+            problem.element_blocks(element, &mut list);
+            let size: usize = list.iter().map(|&block| dofs.get(block)).sum();
+            let (all_gradient, rest) = slots.split_at_mut(size);
+            let (all_second, rest) = rest.split_at_mut(if coupled { size } else { 0 });
+            let all_matrix = &mut rest[..packed_len(size)];
+            all_gradient.fill(0.0);
+            all_second.fill(0.0);
+            all_matrix.fill(0.0);
+            let [own, other] =
+                problem.linearise_sums(element, state, first, all_gradient, all_second, all_matrix);
+            sums[0] += own;
+            sums[1] += other;
+            // The element's unknowns one after the other, each with its place among those that vary, if it does.
+            let places = || {
+                list.iter().flat_map(|&block| {
+                    let found = varied.blocks.iter().find(|varied| varied.0 == block);
+                    (0..dofs.get(block)).map(move |k| found.map(|(_, unknowns)| unknowns.start + k))
+                })
+            };
+            for (i, row) in places().enumerate() {
+                let Some(row) = row else { continue };
+                gradient[row] += all_gradient[i];
+                if coupled {
+                    second[row] += all_second[i];
+                }
+                for (j, column) in places().enumerate().take(i + 1) {
+                    if let Some(column) = column {
+                        matrix[packed(row.max(column), row.min(column))] += all_matrix[packed(i, j)];
+                    }
                 }
             }
         }
+        sums
     }
 }
 
-/// A part of a problem that descends by itself.
+/// How a part descends by itself.
 pub(super) struct Descent<'a, P: ?Sized> {
     pub(super) problem: &'a P,
     pub(super) varied: &'a Varied,

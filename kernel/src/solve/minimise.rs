@@ -85,7 +85,7 @@ pub fn minimise<P: Problem + ?Sized>(
         return Err(WorkspaceTooSmall { needed: layout.len() + 2 * (entries - layout.envelope), given });
     }
     let coupled = Coupled::plain([f64::INFINITY; 2]);
-    let loosens = settings.relaxation > 0 && problem.most_loose_dofs() > 0;
+    let loosens = settings.relaxation > 0 && layout.loosens;
     let relaxation = settings.relaxation;
     let mut run = Run { problem, executor, work, relaxation, loosens, linearisations: 0, coupled };
     Ok(run.iterate(settings, state, records, observer))

@@ -5,9 +5,9 @@
 //! few dozen unknowns at most, while everything shared is held. What the whole then sees is the functional minimised
 //! over them (variable projection), which is far nearer to a quadratic.
 
-use super::descent::{Derivatives, Descent, Varied};
+use super::descent::{Derivatives, Descent, Part, Varied};
 use super::minimise::NO_COST;
-use super::problem::{BlockList, Problem, packed_len};
+use super::problem::{BlockList, Problem};
 use super::workspace::{Indices, Workspace};
 
 /// Takes up to `steps` steps in every element of the trial state, one after the other, until a step promises to lower the
@@ -99,44 +99,27 @@ fn relax_element<P: Problem + ?Sized>(
     totals: &mut [f64; 2],
     enough: f64,
 ) -> usize {
-    let coupled = problem.is_coupled();
     let Workspace { dofs, starts, trial, spare, slots, local, .. } = work;
     let mut list = BlockList::new();
     problem.element_blocks(element, &mut list);
-    // Its own blocks, and how many unknowns they have.
     let mut varied = Varied::new();
-    let mut size = 0;
-    for &block in &list {
-        let dofs = dofs.get(block);
-        size += dofs;
-        if is_private(starts, block) {
-            varied.push(block, dofs);
-        }
+    for &block in list.iter().filter(|&&block| is_private(starts, block)) {
+        varied.push(block, dofs.get(block));
     }
     if varied.unknowns == 0 {
         return 0;
     }
-    let (all_gradient, rest) = slots.split_at_mut(size);
-    let (all_second, all_matrix) = rest.split_at_mut(if coupled { size } else { 0 });
-    let all_matrix = &mut all_matrix[..packed_len(size)];
-
-    let linearise = |state: &[f64], first: [f64; 2], [gradient, second, matrix]: Derivatives<'_>| {
-        if let Some(found) = problem.linearise_own(element, state, first, gradient, second, matrix) {
-            return found;
-        }
-        all_gradient.fill(0.0);
-        all_second.fill(0.0);
-        all_matrix.fill(0.0);
-        let sums = problem.linearise_sums(element, state, first, all_gradient, all_second, all_matrix);
-        varied.add(problem, dofs, &list, [all_gradient, all_second, all_matrix], [gradient, second, matrix]);
-        sums
-    };
-    let sums = if coupled { problem.sums(element, trial) } else { [0.0; 2] };
+    let part = Part { problem, dofs, elements: core::iter::once(element), varied };
+    let sums = if problem.is_coupled() { part.sums(trial) } else { [0.0; 2] };
     let others = [totals[0] - sums[0], totals[1] - sums[1]];
-    let descent = Descent { problem, varied: &varied, others, steps, enough };
+    let descent = Descent { problem, varied: &part.varied, others, steps, enough };
+    let linearise = |state: &[f64], first: [f64; 2], [gradient, second, matrix]: Derivatives<'_>| {
+        let own = problem.linearise_own(element, state, first, gradient, second, matrix);
+        own.unwrap_or_else(|| part.linearise(state, first, slots, [gradient, second, matrix]))
+    };
     let (sums, linearisations) =
-        descent.run([trial, spare], local, sums, |state| problem.sums(element, state), linearise);
-    if coupled {
+        descent.run([trial, spare], local, sums, |state| part.sums(state), linearise);
+    if problem.is_coupled() {
         *totals = [others[0] + sums[0], others[1] + sums[1]];
     }
     linearisations

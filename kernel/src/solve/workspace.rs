@@ -23,6 +23,8 @@ pub(super) struct Layout {
     pub(super) slots: usize,
     pub(super) local: usize,
     pub(super) coupled: usize,
+    /// Whether any block is loose.
+    pub(super) loosens: bool,
 }
 
 impl Layout {
@@ -35,6 +37,7 @@ impl Layout {
             incidences += list.len();
         }
         let local = problem.max_element_dofs();
+        let loose = problem.most_loose_dofs();
         let unknowns = (0..blocks).map(|block| problem.dofs(block)).sum();
         let coupled = problem.is_coupled();
         Self {
@@ -45,14 +48,16 @@ impl Layout {
             state: problem.state_len(),
             slot: 2 + (1 + usize::from(coupled)) * local + packed_len(local),
             slots: width.max(1),
-            local: local.max(problem.most_loose_dofs()),
+            local: local.max(loose),
             coupled: if coupled { unknowns } else { 0 },
+            loosens: loose > 0,
         }
     }
 
     /// The lengths of the parts, in the order in which [`Layout::carve`] hands them out.
     fn parts(&self) -> [usize; 25] {
-        let Self { unknowns: n, blocks, incidences, envelope, state, slot, slots, local, coupled } = *self;
+        let Self { unknowns: n, blocks, incidences, envelope, state, slot, slots, local, coupled, .. } =
+            *self;
         [
             blocks,     // dofs
             blocks,     // order
