@@ -371,8 +371,9 @@ struct Message {
 impl Write for Message {
     fn write_str(&mut self, s: &str) -> fmt::Result {
         for &byte in s.as_bytes() {
-            if self.len + 1 < self.text.len() {
-                self.text[self.len] = byte as c_char;
+            // The last place is the NUL's.
+            if let [place, _, ..] = self.text.get_mut(self.len..).unwrap_or_default() {
+                *place = byte as c_char;
                 self.len += 1;
             }
         }

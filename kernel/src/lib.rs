@@ -49,3 +49,4 @@ pub mod curve;
 mod root;
 pub mod solve;
 pub mod toolpath;
+mod total;

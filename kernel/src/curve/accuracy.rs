@@ -17,6 +17,7 @@ use super::rows::place;
 use super::start::refine;
 use crate::root::sqrt;
 use crate::solve::{Outcome, Problem, Status, WorkspaceTooSmall};
+use crate::total::Total;
 use nalgebra::SVector;
 
 /// By what factor at least the error falls when elements are halved.
@@ -58,13 +59,13 @@ impl Level<'_> {
     /// The curve divided like this.
     pub(super) fn model<'m, const D: usize>(&'m self, of: &Model<'m, D>) -> Model<'m, D> {
         let nodes = self.nodes(of.curve.closed);
-        Model { division: Division::Marked(&self.marks[..nodes]), ..*of }
+        Model { division: Division::Marked(self.marks.part(..nodes)), ..*of }
     }
 
     fn copy_from(&mut self, other: &Level<'_>) {
-        self.counts.copy_from_slice(other.counts);
-        self.marks.copy_from_slice(other.marks);
-        self.state.copy_from_slice(other.state);
+        self.counts.copy(other.counts);
+        self.marks.copy(other.marks);
+        self.state.copy(other.state);
     }
 }
 
@@ -121,8 +122,8 @@ where
         let found = {
             let coarse = current.model(of);
             let Level { counts, marks, state } = &mut *next;
-            let mut fine = Model { division: Division::Marked(&marks[..nodes]), ..*of };
-            let state = &mut state[..fine.state_len()];
+            let mut fine = Model { division: Division::Marked(marks.part(..nodes)), ..*of };
+            let state = state.part_mut(..fine.state_len());
             let (mut span, mut left) = (0, current.counts.first().map_or(0, |&count| count as usize));
             fine.natural_cost = refine(
                 &coarse,
@@ -133,7 +134,7 @@ where
                         left = current.counts.get(span).map_or(1, |&count| count as usize);
                     }
                     left -= 1;
-                    (counts[span] / current.counts[span]) as usize
+                    (counts.at(span) / current.counts.at(span)) as usize
                 },
                 &fine,
                 state,
@@ -188,8 +189,8 @@ where
         level.mark(closed);
         let nodes = level.nodes(closed);
         let Level { counts, marks, state } = &mut *level;
-        let mut fine = Model { division: Division::Marked(&marks[..nodes]), ..*of };
-        let state = &mut state[..fine.state_len()];
+        let mut fine = Model { division: Division::Marked(marks.part(..nodes)), ..*of };
+        let state = state.part_mut(..fine.state_len());
         fine.natural_cost =
             curve.write(coarse, coarse_state, &fine, counts.iter().map(|&count| count as usize), state);
         fine.guarded = false;

@@ -13,6 +13,7 @@ use super::rows::place;
 use super::start::{cut, refine};
 use crate::root::sqrt;
 use crate::solve::{BlockList, Outcome, Problem, Status, WorkspaceTooSmall};
+use crate::total::Total;
 use nalgebra::SVector;
 
 /// A violation below this part of the curve's size is none.
@@ -146,17 +147,18 @@ impl Touching<'_> {
         self.divided = true;
         let Self { marks, old_marks, contacts, state, spare, nodes, .. } = self;
         let count = *nodes;
-        old_marks[..count].copy_from_slice(&marks[..count]);
-        let old = of.touching(&old_marks[..count], contacts);
+        let old_marks = old_marks.part_mut(..count);
+        old_marks.copy(marks.part(..count));
+        let old = of.touching(old_marks, contacts);
         *nodes = old.element_count() * parts + usize::from(!of.curve.closed);
-        marks[..*nodes].fill(0.0);
-        for (mark, old) in marks.iter_mut().step_by(parts).zip(&old_marks[..count]) {
+        marks.part_mut(..*nodes).fill(0.0);
+        for (mark, old) in marks.iter_mut().step_by(parts.max(1)).zip(&*old_marks) {
             *mark = *old;
         }
         let len = old.state_len();
-        spare[..len].copy_from_slice(&state[..len]);
-        let new = of.touching(&marks[..*nodes], contacts);
-        refine(&old, spare, |_| parts, &new, &mut state[..new.state_len()]);
+        spare.part_mut(..len).copy(state.part(..len));
+        let new = of.touching(marks.part(..*nodes), contacts);
+        refine(&old, spare, |_| parts, &new, state.part_mut(..new.state_len()));
     }
 }
 
@@ -190,6 +192,10 @@ impl<const D: usize> Foot<D> {
         }
         let (_, mut element, mut t) = best?;
         let count = model.element_count();
+        let (after, before) = (
+            |element: usize| if element + 1 == count { 0 } else { element + 1 },
+            |element: usize| if element == 0 { count - 1 } else { element - 1 },
+        );
         let mut rows = model.rows(element, state);
         for _ in 0..MOST_STEPS {
             let [here, first, second] = place(&rows, t);
@@ -199,15 +205,15 @@ impl<const D: usize> Foot<D> {
             let next = t - off.dot(&first) / slope;
             t = next.clamp(0.0, 1.0);
             // Over a node into the neighbour.
-            let over = if next > 1.0 { element + 1 } else { element + count - 1 };
-            let ends = !model.curve.closed && (over == count || (next < 0.0 && element == 0));
+            let over = if next > 1.0 { after(element) } else { before(element) };
+            let ends = !model.curve.closed && if next > 1.0 { over == 0 } else { next < 0.0 && element == 0 };
             if next != t && !ends {
-                let beyond = model.rows(over % count, state);
+                let beyond = model.rows(over, state);
                 let back = if next > 1.0 { 0.0 } else { 1.0 };
                 let [there, ahead, _] = place(&beyond, back);
                 // At a corner both sides may lead back to it.
                 if (ahead.dot(&(point - there)) > 0.0) == (next > 1.0) {
-                    (element, t, rows) = (over % count, back, beyond);
+                    (element, t, rows) = (over, back, beyond);
                 }
             }
         }
@@ -222,8 +228,7 @@ impl<const D: usize> Foot<D> {
             }
         } else if t == 0.0 || t == 1.0 {
             // A corner's sides are those of what halves it.
-            let (other, end) =
-                if t == 0.0 { ((element + count - 1) % count, 1) } else { ((element + 1) % count, 0) };
+            let (other, end) = if t == 0.0 { (before(element), 1) } else { (after(element), 0) };
             tangent += model.end(other, end, state).frame[0];
         }
         let across = tangent[0] * off[1] - tangent[1] * off[0];
@@ -324,25 +329,25 @@ where
         let nodes = touching.nodes;
         let mut strongest: Option<(f64, usize)> = None;
         if !changed {
-            let model = of.touching(&touching.marks[..nodes], touching.contacts);
+            let model = of.touching(touching.marks.part(..nodes), touching.contacts);
             let first = weights_of_sums(&model, touching.state);
             for node in 0..nodes {
                 let Some(code) = model.contact_code(node) else { continue };
                 // Away from an obstacle on the left is to the right.
-                let sinks =
-                    pull(&model, node, first, touching.state) * -model.curve.obstacles[code / 3].side.sign();
+                let Some(obstacle) = model.curve.obstacles.get(code / 3) else { continue };
+                let sinks = pull(&model, node, first, touching.state) * -obstacle.side.sign();
                 if sinks > 0.0 && strongest.is_none_or(|(most, _)| sinks > most) {
                     strongest = Some((sinks, node));
                 }
             }
         }
         if let Some((_, node)) = strongest {
-            touching.marks[node] = 0.0;
+            touching.marks.put(node, 0.0);
             changed = true;
         }
         if !changed {
             let found = {
-                let model = of.touching(&touching.marks[..nodes], touching.contacts);
+                let model = of.touching(touching.marks.part(..nodes), touching.contacts);
                 let taken = |code: usize| (0..nodes).any(|node| model.contact_code(node) == Some(code));
                 worst(&model, touching.state, taken)
             };
@@ -350,13 +355,13 @@ where
             if touching.used == touching.contacts.len() || nodes == touching.marks.len() {
                 return Ok(Outcome { status: Status::Stalled, ..outcome });
             }
-            touching.contacts[touching.used] = code as f64;
+            touching.contacts.put(touching.used, code as f64);
             touching.used += 1;
             insert(of, touching, &foot, &point);
         }
         let Touching { marks, contacts, state, nodes, .. } = &mut *touching;
-        let mut model = of.touching(&marks[..*nodes], contacts);
-        let state = &mut state[..model.state_len()];
+        let mut model = of.touching(marks.part(..*nodes), contacts);
+        let state = state.part_mut(..model.state_len());
         outcome = passes.finish(&mut model, relative_decrease, state, work)?;
         if outcome.status != Status::Converged {
             return Ok(outcome);
@@ -376,14 +381,16 @@ fn insert<const D: usize>(
 {
     let Touching { marks, old_marks, contacts, state, spare, nodes, used, .. } = touching;
     let (count, place) = (*nodes, foot.element + 1);
-    old_marks[..count].copy_from_slice(&marks[..count]);
-    marks.copy_within(place..count, place + 1);
-    marks[place] = -(*used as f64);
+    let old_marks = old_marks.part_mut(..count);
+    let marks = marks.part_mut(..count + 1);
+    old_marks.copy(marks.part(..count));
+    marks.part_mut(place + 1..).copy(old_marks.part(place..));
+    marks.put(place, -(*used as f64));
     *nodes = count + 1;
-    let old = of.touching(&old_marks[..count], contacts);
-    let new = of.touching(&marks[..count + 1], contacts);
+    let old = of.touching(old_marks, contacts);
+    let new = of.touching(marks, contacts);
     let len = old.state_len();
-    spare[..len].copy_from_slice(&state[..len]);
+    spare.part_mut(..len).copy(state.part(..len));
 
     // Not at a node itself: a piece must be left on either side.
     let t = foot.t.clamp(LEAST_PIECE, 1.0 - LEAST_PIECE);
@@ -396,9 +403,9 @@ fn insert<const D: usize>(
             middle.frame[0] = forward;
             middle.frame[D - 1][0] = -forward[1];
             middle.frame[D - 1][1] = forward[0];
-            let obstacle = &new.curve.obstacles[contacts[*used - 1] as usize / 3];
-            let clearance = new.place.local_length(obstacle.clearance);
-            middle.point = point - middle.frame[D - 1] * (obstacle.side.sign() * clearance);
+            let obstacle = new.curve.obstacles.get(contacts.at(*used - 1) as usize / 3);
+            let left = obstacle.map_or(0.0, |o| o.side.sign() * new.place.local_length(o.clearance));
+            middle.point = point - middle.frame[D - 1] * left;
         }
         None => {}
     }

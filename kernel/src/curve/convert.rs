@@ -3,6 +3,7 @@
 use super::element::Element;
 use super::measure::{MeasureError, check};
 use crate::root::sqrt;
+use crate::total::Total;
 use nalgebra::Vector3;
 
 /// Neighbouring elements whose tangents differ by less than this angle (radians) are joined smoothly in a B-spline.
@@ -51,7 +52,8 @@ pub fn bspline(
         }
     }
     let speed = |element: usize, row: usize| {
-        let vector = Vector3::from(elements[element].rows[row]);
+        let rows = elements.get(element).map_or([[0.0; 3]; 6], |element| element.rows);
+        let vector = Vector3::from(rows.at(row));
         let most = vector.amax();
         if most > 0.0 {
             let vector = vector / most;
@@ -71,7 +73,7 @@ pub fn bspline(
     let mut knot_at = 0;
     let mut put_knots = |value: f64, times: usize| {
         for _ in 0..times {
-            knots[knot_at] = value;
+            knots.put(knot_at, value);
             knot_at += 1;
         }
     };
@@ -86,7 +88,7 @@ pub fn bspline(
         let from = usize::from(index > 0);
         let to = if smooth_after(elements, index) { 5 } else { 6 };
         for point in &bezier[from..to] {
-            controls[control_at] = *point;
+            controls.put(control_at, *point);
             control_at += 1;
         }
         let last = index + 1 == elements.len();

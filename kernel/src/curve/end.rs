@@ -11,6 +11,7 @@
 //! changing it, and a straight step would leave it.
 
 use crate::root::sqrt;
+use crate::total::Total;
 use core::ops::Range;
 use nalgebra::SVector;
 
@@ -35,6 +36,11 @@ impl<const D: usize> End<D> {
             sum += self.frame[j] * self.curvature[j - 1];
         }
         sum
+    }
+
+    /// The normal `j`, from 0.
+    fn normal(&self, j: usize) -> SVector<f64, D> {
+        self.frame.get(j + 1).copied().unwrap_or_else(SVector::zeros)
     }
 
     /// `P, P', P''`.
@@ -107,23 +113,19 @@ impl<const D: usize> End<D> {
         let zero = SVector::zeros();
         let (tangent, speed) = (self.frame[0], self.speed);
         match coordinate {
-            Coordinate::Point(d) => {
-                let mut unit = zero;
-                unit[d] = 1.0;
-                [unit, zero, zero]
-            }
+            Coordinate::Point(d) => [SVector::from_fn(|x, _| if x == d { 1.0 } else { 0.0 }), zero, zero],
             Coordinate::Along(_) | Coordinate::Torsion => [zero; 3],
-            Coordinate::Across(j) => [self.frame[j + 1], zero, zero],
+            Coordinate::Across(j) => [self.normal(j), zero, zero],
             Coordinate::Roll(centre) => {
                 let [_, first, second] = self.tangent_map(Coordinate::Tangent(0));
                 [tangent * centre, first, second]
             }
             Coordinate::Tangent(j) => {
-                let normal = self.frame[j + 1];
-                let bend = normal * self.stretch - tangent * (speed * speed * self.curvature[j]);
+                let normal = self.normal(j);
+                let bend = normal * self.stretch - tangent * (speed * speed * self.curvature.at(j));
                 [zero, normal * speed, bend]
             }
-            Coordinate::Curvature(j) => [zero, zero, self.frame[j + 1] * (speed * speed)],
+            Coordinate::Curvature(j) => [zero, zero, self.normal(j) * (speed * speed)],
             Coordinate::Turn => [zero, zero, self.turned() * (speed * speed)],
             Coordinate::Speed => [zero, tangent, self.curvature_vector() * (2.0 * speed)],
             Coordinate::Stretch => [zero, zero, tangent],
@@ -155,18 +157,21 @@ impl<const D: usize> End<D> {
             _ => {}
         }
         let (tangent, speed) = (self.frame[0], self.speed);
-        let normal = |j: usize| self.frame[j + 1];
+        let (normal, curvature) = (|j: usize| self.normal(j), |j: usize| self.curvature.at(j));
         match (one, other) {
-            (Point(i), Point(j)) => tangent[i] * tangent[j] * point.dot(&self.curvature_vector()),
+            (Point(i), Point(j)) => {
+                let along = |d: usize| tangent.as_slice().at(d);
+                along(i) * along(j) * point.dot(&self.curvature_vector())
+            }
             (Speed, Speed) => 2.0 * second.dot(&self.curvature_vector()),
             (Speed, Tangent(j)) | (Tangent(j), Speed) => {
-                first.dot(&normal(j)) - 2.0 * speed * self.curvature[j] * second.dot(&tangent)
+                first.dot(&normal(j)) - 2.0 * speed * curvature(j) * second.dot(&tangent)
             }
             (Speed, Curvature(j)) | (Curvature(j), Speed) => 2.0 * speed * second.dot(&normal(j)),
             (Speed, Turn) | (Turn, Speed) => 2.0 * speed * second.dot(&self.turned()),
             (Stretch, Tangent(j)) | (Tangent(j), Stretch) => second.dot(&normal(j)),
             (Tangent(i), Tangent(j)) => {
-                let bend = normal(j) * self.curvature[i] + normal(i) * self.curvature[j];
+                let bend = normal(j) * curvature(i) + normal(i) * curvature(j);
                 let mut sum = -0.5 * speed * speed * second.dot(&bend);
                 if i == j {
                     sum -= speed * first.dot(&tangent) + self.stretch * second.dot(&tangent);
@@ -203,9 +208,9 @@ impl<const D: usize> Default for SideStep<D> {
 impl<const D: usize> SideStep<D> {
     pub(super) fn note(&mut self, coordinate: Coordinate, step: f64) {
         match coordinate {
-            Coordinate::Tangent(j) => self.turn[j] = step,
+            Coordinate::Tangent(j) => self.turn.put(j, step),
             Coordinate::Roll(_) => self.turn[0] = step,
-            Coordinate::Curvature(j) => self.bend[j] = step,
+            Coordinate::Curvature(j) => self.bend.put(j, step),
             Coordinate::Turn => self.twist = step,
             _ => {}
         }
@@ -213,15 +218,15 @@ impl<const D: usize> SideStep<D> {
 
     /// Turns the frame of a side, and adds to its curvature components.
     pub(super) fn apply(&self, side: &mut [f64]) {
-        let (frame, curvature) = side.split_at_mut(D * D);
-        for j in 0..D {
-            curvature[j] += self.bend[j];
+        let (frame, curvature) = side.cut_mut(D * D);
+        for (component, bend) in curvature.iter_mut().zip(self.bend) {
+            *component += bend;
         }
         if self.twist != 0.0 {
             let (sin, cos) = (libm::sin(self.twist), libm::cos(self.twist));
-            let (one, two) = (curvature[0], curvature[1]);
-            curvature[0] = cos * one - sin * two;
-            curvature[1] = sin * one + cos * two;
+            let (one, two) = (curvature.at(0), curvature.at(1));
+            curvature.put(0, cos * one - sin * two);
+            curvature.put(1, sin * one + cos * two);
         }
         let mut square = 0.0;
         for turn in self.turn {
@@ -232,7 +237,8 @@ impl<const D: usize> SideStep<D> {
         }
         let angle = sqrt(square);
         let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-        let rows: [SVector<f64, D>; D] = core::array::from_fn(|j| SVector::from_fn(|d, _| frame[D * j + d]));
+        let rows: [SVector<f64, D>; D] =
+            core::array::from_fn(|j| SVector::from_fn(|d, _| frame.at(D * j + d)));
         // The unit normal towards which the tangent turns.
         let mut towards = SVector::<f64, D>::zeros();
         for j in 1..D {
@@ -247,7 +253,7 @@ impl<const D: usize> SideStep<D> {
         orthonormalise(&mut turned);
         for j in 0..D {
             for d in 0..D {
-                frame[D * j + d] = turned[j][d];
+                frame.put(D * j + d, turned[j][d]);
             }
         }
     }

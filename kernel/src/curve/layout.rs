@@ -7,6 +7,7 @@ use super::model::{Goal, Model};
 use super::natural;
 use super::options::Options;
 use crate::solve::{self, Problem};
+use crate::total::Total;
 
 /// The memory of a curve, in `f64`s: one function that sizes it and carves it.
 pub(super) struct Layout {
@@ -67,7 +68,7 @@ impl Layout {
         }
         let mut rest = memory;
         Ok(self.parts().map(|len| {
-            let (part, tail) = core::mem::take(&mut rest).split_at_mut(len);
+            let (part, tail) = core::mem::take(&mut rest).cut_mut(len);
             rest = tail;
             part
         }))

@@ -7,6 +7,7 @@ use super::options::Options;
 use super::report::{NOTHING, Report, functional_scale};
 use super::solve::{Begin, begin, elements_len, starts};
 use crate::solve::{Observer, Status};
+use crate::total::Total;
 
 /// Looks for several minima of one curve: from the usual start values, from each start tangent turned round, and from each
 /// span bent the other way or further (thesis 4.10: curves with and without a loop). The list is what these starts lead
@@ -54,8 +55,8 @@ pub fn minima_as<R: Copy>(
     }
     let mut found = 0;
     for start in 0..starts(curve) {
-        let (kept, rest) = elements.split_at_mut(reports.len() * len);
-        let scratch = &mut rest[..len];
+        let (kept, rest) = elements.cut_mut(reports.len() * len);
+        let scratch = rest.part_mut(..len);
         let report = begin(curve, options, workspace, scratch, &mut [], observer, Begin::Data(start))?;
         if report.status == Status::Cancelled {
             break;
@@ -70,20 +71,25 @@ pub fn minima_as<R: Copy>(
             (report.value - value).abs() <= SAME_VALUE * (report.value + value) + nothing
                 && (report.length - length).abs() <= SAME_LENGTH * report.length
         };
-        if reports[..found].iter().any(same) {
+        if reports.iter().take(found).any(same) {
             continue;
         }
         let lower = |other: &R| report.value < figures(other)[0];
-        let place = reports[..found].iter().position(lower).unwrap_or(found);
+        let place = reports.iter().take(found).position(lower).unwrap_or(found);
         if place == reports.len() {
             continue;
         }
-        let last = found.min(reports.len() - 1);
-        reports.copy_within(place..last, place + 1);
-        kept.copy_within(place * len..last * len, (place + 1) * len);
-        reports[place] = make(&report);
-        kept[place * len..(place + 1) * len].copy_from_slice(scratch);
-        found = last + 1;
+        found = (found + 1).min(reports.len());
+        // The new one takes its place, and each that is higher the next one's.
+        let mut report = make(&report);
+        for slot in reports.iter_mut().take(found).skip(place) {
+            core::mem::swap(slot, &mut report);
+        }
+        for slot in kept.chunks_exact_mut(len.max(1)).take(found).skip(place) {
+            for (kept, new) in slot.iter_mut().zip(&mut *scratch) {
+                core::mem::swap(kept, new);
+            }
+        }
     }
     Ok(found)
 }

@@ -17,6 +17,7 @@ use super::torsion::SpaceFunctional;
 use crate::basis::mirrored::{pair_count, pairs};
 use crate::root::sqrt;
 use crate::solve::{BlockList, Coupled, Problem, packed};
+use crate::total::Total;
 use core::ops::Range;
 use nalgebra::SVector;
 
@@ -177,7 +178,7 @@ impl<const D: usize> Model<'_, D> {
 
     fn joint_number(&self, node: usize) -> Option<usize> {
         match self.division {
-            Division::Even(parts) => node.is_multiple_of(parts).then_some(node / parts),
+            Division::Even(parts) => node.is_multiple_of(parts).then(|| node / parts.max(1)),
             Division::Marked(nodes) => nodes.get(node).and_then(|&mark| (mark as usize).checked_sub(1)),
         }
     }
@@ -381,11 +382,11 @@ impl<const D: usize> Model<'_, D> {
         let (frame, curvature) = self.side_places(element, end);
         let scalars = self.element_start(element) + 2 * end;
         End {
-            point: SVector::from_fn(|d, _| state[node + d]),
-            frame: core::array::from_fn(|j| SVector::from_fn(|d, _| state[frame + D * j + d])),
-            curvature: core::array::from_fn(|j| state[curvature + j]),
-            speed: state[scalars],
-            stretch: state[scalars + 1],
+            point: SVector::from_fn(|d, _| state.at(node + d)),
+            frame: core::array::from_fn(|j| SVector::from_fn(|d, _| state.at(frame + D * j + d))),
+            curvature: core::array::from_fn(|j| state.at(curvature + j)),
+            speed: state.at(scalars),
+            stretch: state.at(scalars + 1),
         }
     }
 
@@ -395,14 +396,14 @@ impl<const D: usize> Model<'_, D> {
         let (frame, curvature) = self.side_places(element, end);
         let scalars = self.element_start(element) + 2 * end;
         for d in 0..D {
-            state[node + d] = value.point[d];
+            state.put(node + d, value.point[d]);
             for j in 0..D {
-                state[frame + D * j + d] = value.frame[j][d];
+                state.put(frame + D * j + d, value.frame[j][d]);
             }
-            state[curvature + d] = value.curvature[d];
+            state.put(curvature + d, value.curvature[d]);
         }
-        state[scalars] = value.speed;
-        state[scalars + 1] = value.stretch;
+        state.put(scalars, value.speed);
+        state.put(scalars + 1, value.stretch);
     }
 
     /// The six Hermite rows of an element in the local system.
@@ -429,8 +430,8 @@ impl<const D: usize> Model<'_, D> {
         self.space.filter(|space| space.tied)?;
         let at = self.torsion_place(self.node(element, end))?;
         // The first end leaves its node, the second arrives.
-        let multiplier = if end == 0 { state[at + 1] } else { -state[at + 1] };
-        Some([state[at + 2], state[at] + multiplier])
+        let multiplier = if end == 0 { state.at(at + 1) } else { -state.at(at + 1) };
+        Some([state.at(at + 2), state.at(at) + multiplier])
     }
 
     /// The torsions of the two elements that meet at a tied node, and their rates of change: of the arriving one and of
@@ -450,11 +451,12 @@ impl<const D: usize> Model<'_, D> {
         for node in 0..self.node_count() {
             let Some(at) = self.torsion_place(node) else { continue };
             let [[one, one_slope], [other, other_slope]] = self.torsions_at(node, state);
-            let before = (node + count - 1) % count;
-            let speed = state[self.element_start(before) + 2].min(state[self.element_start(node)]);
-            state[at] = 0.5 * (one + other);
-            state[at + 2] = tie / speed;
-            state[at + 1] = -0.5 * (one_slope + other_slope) / state[at + 2];
+            let before = (node + count - 1) % count.max(1);
+            let speed = state.at(self.element_start(before) + 2).min(state.at(self.element_start(node)));
+            let weight = tie / speed;
+            state.put(at, 0.5 * (one + other));
+            state.put(at + 1, -0.5 * (one_slope + other_slope) / weight);
+            state.put(at + 2, weight);
         }
     }
 
@@ -466,7 +468,7 @@ impl<const D: usize> Model<'_, D> {
         for node in 0..self.node_count() {
             let Some(at) = self.torsion_place(node) else { continue };
             let [[one, _], [other, _]] = self.torsions_at(node, state);
-            state[at + 1] += 0.5 * (one - other);
+            state.add(at + 1, 0.5 * (one - other));
             let jump = (one - other).abs() / scale.max(one.abs());
             most = if jump > most { jump } else { most };
         }
@@ -497,7 +499,7 @@ impl<const D: usize> Model<'_, D> {
         let mut sum = 0.0;
         for element in 0..self.element_count() {
             let at = self.element_start(element);
-            sum += 0.5 * (state[at] + state[at + 2]);
+            sum += 0.5 * (state.at(at) + state.at(at + 2));
         }
         sum
     }
@@ -561,18 +563,21 @@ where
     ) {
         let mut maps = [[SVector::<f64, D>::zeros(); 3]; MOST_LOCAL];
         // By the points at the two ends the chord's derivatives count, with opposite signs.
-        let sides = [-1.0, 1.0];
+        let side = |end: usize| if end == 0 { -1.0 } else { 1.0 };
+        let [first_end, last_end] = ends;
+        let of = |end: usize| if end == 0 { first_end } else { last_end };
         for (map, &(end, one)) in maps.iter_mut().zip(list) {
             *map = match one {
                 Coordinate::Along(k) => {
                     [self.guide(self.node(element, end), k), SVector::zeros(), SVector::zeros()]
                 }
-                _ => ends[end].tangent_map(one),
+                _ => of(end).tangent_map(one),
             };
-            map[0] *= sides[end];
+            map[0] *= side(end);
         }
-        for (i, &(end, one)) in list.iter().enumerate() {
-            let map = &maps[i];
+        let [first_tie, last_tie] = &by_rows.ties;
+        let tie_at = |end: usize| if end == 0 { first_tie } else { last_tie };
+        for (i, (&(end, one), map)) in list.iter().zip(&maps).enumerate() {
             let mut slope = 0.0;
             // The Hessian times this direction, by rows.
             let mut along = [SVector::<f64, D>::zeros(); 5];
@@ -588,23 +593,24 @@ where
                 }
             }
             if one == Coordinate::Torsion {
-                slope = by_rows.ties[end].slope;
-                along = by_rows.ties[end].mixed.map(SVector::from);
+                let tie = tie_at(end);
+                slope = tie.slope;
+                along = tie.mixed.map(SVector::from);
             }
-            gradient[i] = slope;
+            gradient.put(i, slope);
             if let Some(second) = second.get_mut(i) {
                 for order in one.orders() {
                     let length = SVector::from(by_rows.length_gradient[row_of(end, order)]);
                     *second += map[order].dot(&length);
                 }
             }
-            for (j, &(other_end, other)) in list.iter().enumerate().take(i + 1) {
+            for (j, (&(other_end, other), other_map)) in list.iter().zip(&maps).enumerate().take(i + 1) {
                 let mut sum = 0.0;
                 for order in other.orders() {
-                    sum += maps[j][order].dot(&along[row_of(other_end, order)]);
+                    sum += other_map[order].dot(&along[row_of(other_end, order)]);
                 }
                 if other == Coordinate::Torsion {
-                    let tie = &by_rows.ties[other_end];
+                    let tie = tie_at(other_end);
                     for order in one.orders() {
                         sum += map[order].dot(&SVector::from(tie.mixed[row_of(end, order)]));
                     }
@@ -615,9 +621,9 @@ where
                 if end == other_end {
                     let [point, first, second] =
                         [0, 1, 2].map(|order| SVector::<f64, D>::from(by_rows.gradient[row_of(end, order)]));
-                    sum += ends[end].second_map(one, other, &(point * sides[end]), &first, &second);
+                    sum += of(end).second_map(one, other, &(point * side(end)), &first, &second);
                 }
-                matrix[packed(i, j)] = sum;
+                matrix.put(packed(i, j), sum);
             }
         }
     }
@@ -727,7 +733,13 @@ where
         Some(if self.curve.closed {
             // Cut open at the first node, which comes last: its rows alone are long then.
             let element = place / 2;
-            if place.is_multiple_of(2) { nodes + element } else { (element + 1) % nodes }
+            if place.is_multiple_of(2) {
+                nodes + element
+            } else if element + 1 == nodes {
+                0
+            } else {
+                element + 1
+            }
         } else if place.is_multiple_of(2) {
             place / 2
         } else {
@@ -843,56 +855,56 @@ where
     }
 
     fn retract(&self, block: usize, from: &[f64], step: &[f64], to: &mut [f64]) {
-        to.copy_from_slice(from);
+        to.copy(from);
         let mut steps = step.iter();
         let mut next = || steps.next().copied().unwrap_or(0.0);
         let nodes = self.node_count();
         if block < nodes {
-            let (point, side) = to.split_at_mut(D);
+            let (point, side) = to.cut_mut(D);
             let mut turn = SideStep::<D>::default();
             let mut slide = 0.0;
             self.node_coordinates(block, |coordinate| match coordinate {
                 Coordinate::Point(d) => {
                     let step = next();
-                    point[d] += step;
-                    slide += step * side[d];
+                    point.add(d, step);
+                    slide += step * side.at(d);
                 }
                 Coordinate::Along(k) => {
                     let (step, guide) = (next(), self.guide(block, k));
                     for d in 0..D {
-                        point[d] += step * guide[d];
+                        point.add(d, step * guide[d]);
                     }
                 }
                 Coordinate::Across(j) => {
                     let step = next();
                     for d in 0..D {
-                        point[d] += step * side[D * (j + 1) + d];
+                        point.add(d, step * side.at(D * (j + 1) + d));
                     }
                 }
-                Coordinate::Torsion => side[side_len(D)] += next(),
+                Coordinate::Torsion => side.add(side_len(D), next()),
                 _ => turn.note(coordinate, next()),
             });
             if slide != 0.0 {
                 for d in 0..D {
                     for j in 1..D {
-                        let curvature = side[D * D + j - 1] * side[D * j + d];
-                        point[d] += 0.5 * slide * slide * curvature;
+                        let curvature = side.at(D * D + j - 1) * side.at(D * j + d);
+                        point.add(d, 0.5 * slide * slide * curvature);
                     }
                 }
             }
             turn.apply(side);
             if let Some(Contact::Around { point: centre, left }) = self.contact(block) {
                 for d in 0..D {
-                    point[d] = centre[d] - left * side[D + d];
+                    point.put(d, centre[d] - left * side.at(D + d));
                 }
             }
         } else {
-            let (scalars, sides) = to.split_at_mut(4);
-            let (first, second) = sides.split_at_mut(side_len(D));
+            let (scalars, sides) = to.cut_mut(4);
+            let (first, second) = sides.cut_mut(side_len(D));
             let mut turns = [SideStep::<D>::default(); 2];
             self.element_coordinates(block - nodes, |end, coordinate| match coordinate {
-                Coordinate::Speed => scalars[2 * end] += next(),
-                Coordinate::Stretch => scalars[2 * end + 1] += next(),
+                Coordinate::Speed => scalars.add(2 * end, next()),
+                Coordinate::Stretch => scalars.add(2 * end + 1, next()),
                 _ => turns[end].note(coordinate, next()),
             });
             turns[0].apply(first);
@@ -935,14 +947,13 @@ where
     fn vary(&self, element: usize, variant: usize, state: &mut [f64]) {
         // A quintic fits most shapes about as well when it runs through them faster at one end or at the other: its
         // minima differ in this skew. They are looked for from either side of an even speed.
-        let skew = SKEWS[variant];
+        let skew = SKEWS.at(variant);
         let at = self.element_start(element);
         let faster = libm::exp(skew);
-        let even = 0.5 * (state[at] + state[at + 2]);
-        state[at] = even * faster;
-        state[at + 1] = -2.0 * skew * even * faster;
-        state[at + 2] = even / faster;
-        state[at + 3] = -2.0 * skew * even / faster;
+        let even = 0.5 * (state.at(at) + state.at(at + 2));
+        let scalars =
+            [even * faster, -2.0 * skew * even * faster, even / faster, -2.0 * skew * even / faster];
+        state.part_mut(at..at + 4).copy(&scalars);
     }
 
     fn natural_sizes(&self, block: usize, state: &[f64], sizes: &mut [f64]) {
@@ -961,7 +972,7 @@ where
                 };
             }
         };
-        let speed = |element: usize, end: usize| state[self.element_start(element) + 2 * end];
+        let speed = |element: usize, end: usize| state.at(self.element_start(element) + 2 * end);
         if block < nodes {
             let before = if block > 0 { Some(block - 1) } else { self.element_count().checked_sub(1) };
             let before = before.filter(|_| block > 0 || self.curve.closed);

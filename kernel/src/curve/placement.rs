@@ -9,6 +9,7 @@ use super::element::Element;
 use super::error::CurveError;
 use super::joint::{Curve, Given, Joint};
 use crate::root::sqrt;
+use crate::total::Total;
 use nalgebra::{SVector, Vector3};
 
 /// A local orthonormal system of `D` axes.
@@ -181,7 +182,7 @@ fn plane_axes(curve: &Curve<'_>, origin: &Vector3<f64>) -> Option<[Vector3<f64>;
         (1, [Vector3::z(), Vector3::x()]),
     ] {
         let mut flat = true;
-        vectors(curve, origin, f64::INFINITY, |vector, _| flat &= vector[across] == 0.0);
+        vectors(curve, origin, f64::INFINITY, |vector, _| flat &= vector.as_slice().at(across) == 0.0);
         if flat {
             return Some(axes);
         }

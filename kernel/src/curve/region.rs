@@ -104,8 +104,9 @@ impl Region<'_> {
         let mut held = [joints[0], joints[given - 1]];
         for ((joint, element), end) in held.iter_mut().zip(neighbours).zip([1.0, 0.0]) {
             let Some(element) = element else { continue };
-            let place = measure::at(&self.elements[element..=element], 0, end)
-                .map_err(|_| CurveError::BadElement { element })?;
+            let bad = CurveError::BadElement { element };
+            let beside = self.elements.get(element).ok_or(bad)?;
+            let place = measure::at(core::slice::from_ref(beside), 0, end).map_err(|_| bad)?;
             let there = Joint::held_at(&place);
             joint.position = there.position;
             if joint.continuity != Continuity::G0 {

@@ -10,6 +10,7 @@ use super::passes::{self, Passes};
 use crate::basis::quadrature::MAX_POINTS;
 use crate::root::sqrt;
 use crate::solve::{Outcome, Problem, Status};
+use crate::total::Total;
 
 /// How a curve came out. All figures in the caller's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +79,7 @@ where
     Shape<D>: Density<D>,
 {
     let count = model.element_count();
-    let elements = &mut elements[..count];
+    let elements = elements.part_mut(..count);
     for (index, element) in elements.iter_mut().enumerate() {
         *element = world_element(model, index, state);
     }

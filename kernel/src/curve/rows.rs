@@ -108,7 +108,8 @@ where
             first(&[d[0][0], d[1][0]]);
             let (target, pace) = self.targets(pairs);
             let weights = Weighted::by(&self.weights, pairs.weight);
-            let [one, other] = [0, 1].map(|side: usize| Shape::value(&weights, &target[side], &d[side]));
+            let one = Shape::value(&weights, &target[0], &d[0]);
+            let other = Shape::value(&weights, &target[1], &d[1]);
             value += one.value + other.value;
             if self.gauge > 0.0 {
                 value += (evenness(&d[0], pace[0]) + evenness(&d[1], pace[1])) * pairs.weight * self.gauge;

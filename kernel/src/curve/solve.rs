@@ -19,6 +19,7 @@ use super::space::Space;
 use super::start::{Start, adopt, refine};
 use crate::basis::quadrature::MAX_POINTS;
 use crate::solve::{Observer, Outcome, Problem, Record, Status, WorkspaceTooSmall};
+use crate::total::Total;
 
 /// The number of elements that a curve has, `spans × elements_per_span`; with a tolerance or obstacles the most that it may
 /// have: an obstacle counts as four spans then.
@@ -247,7 +248,7 @@ where
 
     // One element a span first: its solution, cut into parts, is within some millionths of what more elements reach.
     let mut coarse = Model { division: Division::Even(1), ..model };
-    let coarse_state = &mut state[..coarse.state_len()];
+    let coarse_state = state.part_mut(..coarse.state_len());
     coarse.natural_cost =
         Start { model: &coarse, place, parts: 1, turned: begin.turned(curve) }.fill(coarse_state)?;
     take_scale(&mut coarse, coarse_state);
@@ -281,9 +282,9 @@ where
     {
         if options.tolerance == 0.0 {
             // The elements' minimum is next to the true one.
-            let kept = &mut work[..coarse_state.len()];
-            kept.copy_from_slice(coarse_state);
-            let whole = &mut state[..model.state_len()];
+            let kept = work.part_mut(..coarse_state.len());
+            kept.copy(coarse_state);
+            let whole = state.part_mut(..model.state_len());
             model.natural_cost =
                 found.write(&coarse, kept, &model, core::iter::repeat_n(parts, curve.spans()), whole);
             let outcome = passes.finish(&mut model, decrease, whole, work).map_err(wrong)?;
@@ -322,7 +323,7 @@ where
             // Too few elements to have a minimum at all.
             base = parts.min(LEAST_PARTS);
             let mut divided = Model { division: Division::Even(base), ..model };
-            let divided_state = &mut state[..divided.state_len()];
+            let divided_state = state.part_mut(..divided.state_len());
             divided.natural_cost = Start { model: &divided, place, parts: base, turned: begin.turned(curve) }
                 .fill(divided_state)?;
             outcome = passes.shape_and_finish(&mut divided, decrease, divided_state, work).map_err(wrong)?;
@@ -344,15 +345,15 @@ where
     }
 
     if found {
-        let kept = &mut work[..coarse_state.len()];
-        kept.copy_from_slice(coarse_state);
-        let state = &mut state[..model.state_len()];
+        let kept = work.part_mut(..coarse_state.len());
+        kept.copy(coarse_state);
+        let state = state.part_mut(..model.state_len());
         model.natural_cost = refine(&coarse, kept, |_| parts, &model, state);
         if !stopped {
             outcome = passes.finish(&mut model, decrease, state, work).map_err(wrong)?;
         }
     } else {
-        let state = &mut state[..model.state_len()];
+        let state = state.part_mut(..model.state_len());
         model.natural_cost =
             Start { model: &model, place, parts, turned: begin.turned(curve) }.fill(state)?;
         outcome = passes.shape_and_finish(&mut model, decrease, state, work).map_err(wrong)?;
@@ -440,11 +441,11 @@ where
         return Ok(hand_over(model, &outcome, passes, state, elements, options));
     }
     let nodes = model.node_count();
-    for (node, mark) in marks[..nodes].iter_mut().enumerate() {
+    for (node, mark) in marks.iter_mut().take(nodes).enumerate() {
         *mark = model.joint_mark(node);
     }
     let most = most_contacts(model.curve.obstacles.len());
-    let contacts = &mut contacts[..most];
+    let contacts = contacts.part_mut(..most);
     let mut touching = Touching { marks, old_marks, contacts, state, spare, nodes, used: 0, divided: false };
     let decrease = options.relative_decrease;
     outcome = keep_clear(passes, model, decrease, outcome, &mut touching, work)?;
@@ -454,7 +455,7 @@ where
         outcome = keep_clear(passes, model, decrease, outcome, &mut touching, work)?;
     }
     let Touching { marks, contacts, state, nodes, .. } = touching;
-    let model = model.touching(&marks[..nodes], contacts);
+    let model = model.touching(marks.part(..nodes), contacts);
     Ok(hand_over(&model, &outcome, passes, state, elements, options))
 }
 

@@ -15,6 +15,7 @@ use super::model::Model;
 use super::placement::Placement;
 use super::rows::place;
 use crate::root::sqrt;
+use crate::total::Total;
 use nalgebra::SVector;
 
 /// The speed at the ends of the quintic of least variation on an arc of turning `θ` is the arc's length times
@@ -108,6 +109,11 @@ where
         self.model.curve.joints
     }
 
+    fn data(&self, joint: usize) -> &Joint {
+        const NONE: Joint = Joint::at([0.0; 3]);
+        self.joints().get(joint).unwrap_or(&NONE)
+    }
+
     /// The next joint (`side` 1) or the one before (`side` 0), if there is one.
     fn neighbour(&self, joint: usize, side: usize) -> Option<usize> {
         let count = self.joints().len();
@@ -126,7 +132,7 @@ where
 
     fn point(&self, joint: usize, state: &[f64]) -> SVector<f64, D> {
         let at = self.point_place(joint);
-        SVector::from_fn(|d, _| state[at + d])
+        SVector::from_fn(|d, _| state.at(at + d))
     }
 
     /// The inverted steps `A`, `B` to the two neighbours.
@@ -153,7 +159,7 @@ where
     }
 
     fn rule(&self, joint: usize, side: usize) -> Rule {
-        let data = &self.joints()[joint];
+        let data = self.data(joint);
         if data.tangent[side].given != Given::FREE {
             Rule::Given
         } else if data.continuity != Continuity::G0
@@ -169,10 +175,10 @@ where
     /// Positions: given ones, and free ones evenly between the given neighbours.
     fn points(&self, state: &mut [f64]) {
         let count = self.joints().len();
-        let given = |joint: usize| self.joints()[joint].position.given != Given::FREE;
+        let given = |joint: usize| self.data(joint).position.given != Given::FREE;
         let put = |state: &mut [f64], joint: usize, point: &SVector<f64, D>| {
             let at = self.point_place(joint);
-            state[at..at + D].copy_from_slice(point.as_slice());
+            state.part_mut(at..at + D).copy(point.as_slice());
         };
         for (joint, data) in self.joints().iter().enumerate() {
             if given(joint) {
@@ -214,12 +220,12 @@ where
 
     fn tangent(&self, joint: usize, side: usize, state: &[f64]) -> SVector<f64, D> {
         let found = self.usual_tangent(joint, side, state);
-        let kept = self.joints()[joint].tangent[side].given == Given::FIXED;
+        let kept = self.data(joint).tangent[side].given == Given::FIXED;
         if self.turned == Some(joint) && !kept { -found } else { found }
     }
 
     fn usual_tangent(&self, joint: usize, side: usize, state: &[f64]) -> SVector<f64, D> {
-        let data = &self.joints()[joint];
+        let data = self.data(joint);
         let here = self.point(joint, state);
         let found = match self.rule(joint, side) {
             Rule::Given => return self.place.local_direction(&data.tangent[side].value),
@@ -257,7 +263,7 @@ where
         tangent: &SVector<f64, D>,
         state: &[f64],
     ) -> SVector<f64, D> {
-        let data = &self.joints()[joint];
+        let data = self.data(joint);
         let given = &data.curvature[side];
         if given.given == Given::FREE {
             return self.free_curvature(joint, side, tangent, state);
@@ -285,7 +291,7 @@ where
         tangent: &SVector<f64, D>,
         state: &[f64],
     ) -> SVector<f64, D> {
-        let data = &self.joints()[joint];
+        let data = self.data(joint);
         if data.continuity == Continuity::G2
             && let Some([along, curvature]) = self.circle(joint, state)
         {
@@ -293,8 +299,8 @@ where
         }
         let side = if self.neighbour(joint, side).is_some() { side } else { 1 - side };
         let Some(other) = self.neighbour(joint, side) else { return SVector::zeros() };
-        if self.joints()[joint].continuity == Continuity::G2
-            && self.joints()[other].continuity == Continuity::G2
+        if self.data(joint).continuity == Continuity::G2
+            && self.data(other).continuity == Continuity::G2
             && let Some([along, curvature]) = self.circle(other, state)
         {
             // The thesis's end rule: the neighbour's curvature.
@@ -316,7 +322,7 @@ where
         let tangent = self.tangent(joint, side, state);
         let curvature = self.curvature(joint, side, &tangent, state);
         // At a G1 joint both sides share the frame: it must not depend on the side's curvature.
-        let shared = self.joints()[joint].continuity == Continuity::G1;
+        let shared = self.data(joint).continuity == Continuity::G1;
         let frame = frame_of(&tangent, &if shared { SVector::zeros() } else { curvature });
         let mut components = [0.0; D];
         for j in 1..D {
@@ -361,7 +367,7 @@ where
     fn undecided(&self, state: &[f64]) -> Option<usize> {
         (0..self.joints().len()).find(|&joint| {
             (0..2).any(|side| {
-                let data = &self.joints()[joint];
+                let data = self.data(joint);
                 let given = matches!(data.curvature[side].given, Given::INITIAL | Given::FIXED)
                     && data.tangent[side].given == Given::FREE;
                 given
@@ -385,7 +391,8 @@ where
         let (spans, count) = (self.model.curve.spans(), self.joints().len());
         let mut natural = 0.0;
         for span in 0..spans {
-            let mut ends = [self.end(span, 1, state), self.end((span + 1) % count, 0, state)];
+            let mut ends =
+                [self.end(span, 1, state), self.end(if span + 1 == count { 0 } else { span + 1 }, 0, state)];
             self.set_speeds(&mut ends);
             natural += subdivide(self.model, span * self.parts, self.parts, &ends, state);
         }

@@ -4,6 +4,7 @@ use super::envelope::Envelope;
 use super::problem::{BlockList, Coupled, MAX_ELEMENT_BLOCKS, Problem, packed, packed_len};
 use super::trust_region::{self, Radius, Vectors};
 use super::workspace::Indices;
+use crate::total::Total;
 use core::ops::Range;
 
 /// The first radius of such a trust region, in natural sizes.
@@ -67,9 +68,9 @@ impl<P: Problem + ?Sized, I: Iterator<Item = usize> + Clone> Part<'_, '_, P, I> 
             let mut list = BlockList::new();
             problem.element_blocks(element, &mut list);
             let size: usize = list.iter().map(|&block| dofs.get(block)).sum();
-            let (all_gradient, rest) = slots.split_at_mut(size);
-            let (all_second, rest) = rest.split_at_mut(if coupled { size } else { 0 });
-            let all_matrix = &mut rest[..packed_len(size)];
+            let (all_gradient, rest) = slots.cut_mut(size);
+            let (all_second, rest) = rest.cut_mut(if coupled { size } else { 0 });
+            let all_matrix = rest.part_mut(..packed_len(size));
             all_gradient.fill(0.0);
             all_second.fill(0.0);
             all_matrix.fill(0.0);
@@ -86,13 +87,14 @@ impl<P: Problem + ?Sized, I: Iterator<Item = usize> + Clone> Part<'_, '_, P, I> 
             };
             for (i, row) in places().enumerate() {
                 let Some(row) = row else { continue };
-                gradient[row] += all_gradient[i];
+                gradient.add(row, all_gradient.at(i));
                 if coupled {
-                    second[row] += all_second[i];
+                    second.add(row, all_second.at(i));
                 }
                 for (j, column) in places().enumerate().take(i + 1) {
                     if let Some(column) = column {
-                        matrix[packed(row.max(column), row.min(column))] += all_matrix[packed(i, j)];
+                        let place = packed(row.max(column), row.min(column));
+                        matrix.add(place, all_matrix.at(packed(i, j)));
                     }
                 }
             }
@@ -138,21 +140,21 @@ impl<P: Problem + ?Sized> Descent<'_, P> {
         let coupled = problem.is_coupled();
         let count = varied.unknowns;
         let envelope = Envelope::Full(count);
-        let (matrix, rest) = memory.split_at_mut(packed_len(count));
-        let (factor, rest) = rest.split_at_mut(packed_len(count));
-        let (gradient, rest) = rest.split_at_mut(count);
-        let (step, rest) = rest.split_at_mut(count);
-        let (scratch, rest) = rest.split_at_mut(count);
-        let (sizes, rest) = rest.split_at_mut(count);
-        let (direction, rest) = rest.split_at_mut(count);
-        let second = &mut rest[..if coupled { count } else { 0 }];
+        let (matrix, rest) = memory.cut_mut(packed_len(count));
+        let (factor, rest) = rest.cut_mut(packed_len(count));
+        let (gradient, rest) = rest.cut_mut(count);
+        let (step, rest) = rest.cut_mut(count);
+        let (scratch, rest) = rest.cut_mut(count);
+        let (sizes, rest) = rest.cut_mut(count);
+        let (direction, rest) = rest.cut_mut(count);
+        let second = rest.part_mut(..if coupled { count } else { 0 });
 
         let mut radius = Radius(FIRST_RADIUS);
         let (mut shift, mut moved, mut linearisations, mut value) = (0.0, true, 0, f64::INFINITY);
         for _ in 0..steps {
             if moved {
                 for (block, unknowns) in &varied.blocks {
-                    problem.natural_sizes(*block, trial, &mut sizes[unknowns.clone()]);
+                    problem.natural_sizes(*block, trial, sizes.part_mut(unknowns.clone()));
                 }
                 let first = self.objective(sums).first;
                 gradient.fill(0.0);
@@ -164,16 +166,17 @@ impl<P: Problem + ?Sized> Descent<'_, P> {
                 value = found;
                 for row in 0..count {
                     for column in 0..=row {
-                        let entry = &mut matrix[packed(row, column)];
+                        let Some(entry) = matrix.get_mut(packed(row, column)) else { continue };
                         if coupled {
                             // The coupling's part of rank two, small enough to be added as it is.
-                            let of =
-                                |at: usize| [(gradient[at] - first[1] * second[at]) / first[0], second[at]];
+                            let of = |at: usize| {
+                                [(gradient.at(at) - first[1] * second.at(at)) / first[0], second.at(at)]
+                            };
                             let (a, b) = (of(row), of(column));
                             *entry += a[0] * (c[0][0] * b[0] + c[0][1] * b[1])
                                 + a[1] * (c[1][0] * b[0] + c[1][1] * b[1]);
                         }
-                        *entry *= sizes[row] * sizes[column];
+                        *entry *= sizes.at(row) * sizes.at(column);
                     }
                 }
                 for (g, size) in gradient.iter_mut().zip(sizes.iter()) {
@@ -196,7 +199,8 @@ impl<P: Problem + ?Sized> Descent<'_, P> {
             }
             for (block, unknowns) in &varied.blocks {
                 let range = problem.state_range(*block);
-                problem.retract(*block, &trial[range.clone()], &step[unknowns.clone()], &mut spare[range]);
+                let (from, to) = (trial.part(range.clone()), spare.part_mut(range));
+                problem.retract(*block, from, step.part(unknowns.clone()), to);
             }
             let tried_sums = sums_of(spare);
             let tried = self.objective(tried_sums).value;
@@ -205,9 +209,9 @@ impl<P: Problem + ?Sized> Descent<'_, P> {
             for &(block, _) in &varied.blocks {
                 let range = problem.state_range(block);
                 if moved {
-                    trial[range.clone()].copy_from_slice(&spare[range]);
+                    trial.part_mut(range.clone()).copy(spare.part(range));
                 } else {
-                    spare[range.clone()].copy_from_slice(&trial[range]);
+                    spare.part_mut(range.clone()).copy(trial.part(range));
                 }
             }
             if moved {

@@ -8,6 +8,7 @@ use super::problem::packed_len;
 use super::workspace::Indices;
 use crate::basis::lanes::{Lanes, WIDTH};
 use crate::root::sqrt;
+use crate::total::Total;
 
 /// The shape of an envelope.
 #[derive(Clone, Copy)]
@@ -80,18 +81,18 @@ impl Envelope<'_, '_> {
     #[inline]
     pub(crate) fn add(&self, matrix: &mut [f64], r: usize, c: usize, value: f64) {
         let (first, range) = self.row(r);
-        matrix[range.start + c - first] += value;
+        matrix.add(range.start + c - first, value);
     }
 
     /// Makes a row, and its column, that of an unknown which stands alone.
     pub(crate) fn isolate(&self, matrix: &mut [f64], r: usize) {
         let (_, range) = self.row(r);
-        matrix[range.clone()].fill(0.0);
-        matrix[range.end - 1] = 1.0;
+        matrix.part_mut(range.clone()).fill(0.0);
+        matrix.put(range.end - 1, 1.0);
         for below in r + 1..self.rows() {
             let (first, range) = self.row(below);
             if first <= r {
-                matrix[range.start + r - first] = 0.0;
+                matrix.put(range.start + r - first, 0.0);
             }
         }
     }
@@ -102,13 +103,13 @@ impl Envelope<'_, '_> {
         for r in 0..self.rows() {
             let (first, range) = self.row(r);
             let mut own = 0.0;
-            for (c, value) in (first..).zip(&matrix[range]) {
+            for (c, value) in (first..).zip(matrix.part(range)) {
                 own += value.abs();
                 if c < r {
-                    sums[c] += value.abs();
+                    sums.add(c, value.abs());
                 }
             }
-            sums[r] += own;
+            sums.add(r, own);
         }
         sums.iter().fold(0.0, |most, &sum| most.max(sum))
     }
@@ -119,13 +120,13 @@ impl Envelope<'_, '_> {
         for r in 0..self.rows() {
             let (first, range) = self.row(r);
             let mut sum = 0.0;
-            for (c, value) in (first..).zip(&matrix[range]) {
-                sum += value * vector[c];
+            for (c, value) in (first..).zip(matrix.part(range)) {
+                sum += value * vector.at(c);
                 if c < r {
-                    out[c] += value * vector[r];
+                    out.add(c, value * vector.at(r));
                 }
             }
-            out[r] += sum;
+            out.add(r, sum);
         }
     }
 
@@ -155,7 +156,7 @@ impl Envelope<'_, '_> {
     pub(crate) fn solve(&self, factor: &[f64], factored: Factored, x: &mut [f64]) {
         self.forward(factor, x);
         if let Some(n) = factored.negative {
-            x[n] = -x[n];
+            x.put(n, -x.at(n));
         }
         self.backward(factor, x, self.rows());
     }
@@ -164,9 +165,9 @@ impl Envelope<'_, '_> {
     pub(crate) fn forward(&self, factor: &[f64], x: &mut [f64]) {
         for r in 0..self.rows() {
             let (first, range) = self.row(r);
-            let row = &factor[range];
-            let sum = dot(&row[..r - first], &x[first..r]);
-            x[r] = (x[r] - sum) * row[r - first];
+            let (row, inverse_pivot) = factor.part(range).cut(r - first);
+            let sum = dot(row, x.part(first..r));
+            x.put(r, (x.at(r) - sum) * inverse_pivot.at(0));
         }
     }
 
@@ -174,10 +175,10 @@ impl Envelope<'_, '_> {
     fn backward(&self, factor: &[f64], x: &mut [f64], rows: usize) {
         for r in (0..rows).rev() {
             let (first, range) = self.row(r);
-            let row = &factor[range];
-            let value = x[r] * row[r - first];
-            x[r] = value;
-            for (entry, target) in row[..r - first].iter().zip(&mut x[first..r]) {
+            let (row, inverse_pivot) = factor.part(range).cut(r - first);
+            let value = x.at(r) * inverse_pivot.at(0);
+            x.put(r, value);
+            for (entry, target) in row.iter().zip(x.part_mut(first..r)) {
                 *target -= entry * value;
             }
         }
@@ -188,11 +189,11 @@ impl Envelope<'_, '_> {
     pub(crate) fn negative_direction(&self, factor: &[f64], failure: &Indefinite, v: &mut [f64]) {
         v.fill(0.0);
         let (first, range) = self.row(failure.row);
-        for (c, entry) in (first..failure.row).zip(&factor[range]) {
-            v[c] = -entry;
+        for (c, entry) in (first..failure.row).zip(factor.part(range)) {
+            v.put(c, -entry);
         }
         self.backward(factor, v, failure.row);
-        v[failure.row] = 1.0;
+        v.put(failure.row, 1.0);
     }
 }
 
@@ -210,35 +211,38 @@ fn factor_by(
     let mut negative = None;
     for r in 0..rows {
         let (first, start) = place(r);
-        let (done, rest) = factor.split_at_mut(start);
-        let row = &mut rest[..r - first + 1];
-        row.copy_from_slice(&matrix[start..start + row.len()]);
+        let (done, rest) = factor.cut_mut(start);
+        let row = rest.part_mut(..r - first + 1);
+        row.copy(matrix.part(start..start + (r - first) + 1));
         for c in first..r {
             let (c_first, c_start) = place(c);
-            let other = &done[c_start..c_start + (c - c_first) + 1];
+            let (other, inverse_pivot) = done.part(c_start..c_start + (c - c_first) + 1).cut(c - c_first);
             let from = first.max(c_first);
-            let mut sum = dot(&row[from - first..c - first], &other[from - c_first..c - c_first]);
+            let (known, rest) = row.cut_mut(c - first);
+            let Some(entry) = rest.first_mut() else { break };
+            let mut sum = dot(known.part(from - first..), other.part(from - c_first..));
             if let Some(n) = negative.filter(|n| (from..c).contains(n)) {
-                sum -= 2.0 * row[n - first] * other[n - c_first];
+                sum -= 2.0 * known.at(n - first) * other.at(n - c_first);
             }
-            row[c - first] = (row[c - first] - sum) * other[c - c_first];
+            *entry = (*entry - sum) * inverse_pivot.at(0);
             if negative == Some(c) {
-                row[c - first] = -row[c - first];
+                *entry = -*entry;
             }
         }
-        let (entries, diagonal) = row.split_at_mut(r - first);
-        let mut pivot = diagonal[0] + shift - dot(entries, entries);
+        let (entries, diagonal) = row.cut_mut(r - first);
+        let Some(diagonal) = diagonal.first_mut() else { break };
+        let mut pivot = *diagonal + shift - dot(entries, entries);
         if let Some(n) = negative.filter(|n| (first..r).contains(n)) {
-            pivot += 2.0 * entries[n - first] * entries[n - first];
+            pivot += 2.0 * entries.at(n - first) * entries.at(n - first);
         }
-        let noise = PIVOT_ROUNDING * diagonal[0].abs() + NORM_ROUNDING * norm;
+        let noise = PIVOT_ROUNDING * diagonal.abs() + NORM_ROUNDING * norm;
         let may_be_negative = allow == Allow::OneNegative && negative.is_none();
-        diagonal[0] = if pivot > noise {
+        *diagonal = if pivot > noise {
             1.0 / sqrt(pivot)
         } else if pivot >= -noise {
             entries.fill(0.0);
             IMMOVABLE
-        } else if may_be_negative && -pivot > LEAST_NEGATIVE * diagonal[0].abs() {
+        } else if may_be_negative && -pivot > LEAST_NEGATIVE * diagonal.abs() {
             negative = Some(r);
             1.0 / sqrt(-pivot)
         } else {

@@ -10,6 +10,7 @@ use super::trust_region::{self, Radius, Vectors};
 use super::workspace::{Indices, Layout, Workspace, WorkspaceTooSmall};
 use super::{patch, relax};
 use crate::root::sqrt;
+use crate::total::Total;
 
 /// How to iterate.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -153,7 +154,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     ) -> Outcome {
         let natural = self.problem.natural_cost();
         let explores = settings.explores && self.relaxation > 0 && self.problem.variants() > 0;
-        self.work.trial.copy_from_slice(state);
+        self.work.trial.copy(state);
         self.coupled = self.cost();
         if settings.first_relaxation > 0 {
             let enough = ENOUGH * settings.relative_decrease * self.coupled.value.abs()
@@ -172,7 +173,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                     sweeps = 0;
                 }
             }
-            state.copy_from_slice(self.work.trial);
+            state.copy(self.work.trial);
         }
         let mut value = self.linearise(state);
         let mut outcome = Outcome {
@@ -310,7 +311,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
             }
             let control = observer.iteration(outcome.iterations, &record);
             if accepted {
-                state.copy_from_slice(self.work.trial);
+                state.copy(self.work.trial);
                 self.coupled = tried;
                 value = self.linearise(state);
                 outcome.value = value;
@@ -335,11 +336,11 @@ impl<P: Problem + ?Sized> Run<'_, P> {
     fn hop(&mut self, state: &mut [f64], value: f64) -> bool {
         self.linearisations += relax::explore(self.problem, &mut self.work, EXPLORATION, value, state);
         let Workspace { trial, best, .. } = &mut self.work;
-        trial.copy_from_slice(best);
+        trial.copy(best);
         let found = self.cost();
         let better = found.value < value * (1.0 - relax::BETTER);
         if better {
-            state.copy_from_slice(self.work.best);
+            state.copy(self.work.best);
             self.coupled = found;
         }
         better
@@ -371,13 +372,13 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         for ((out, s), size) in scratch.iter_mut().zip(step.iter()).zip(sizes.iter()) {
             *out = s * size;
         }
-        trial.copy_from_slice(state);
+        trial.copy(state);
         for block in 0..self.problem.blocks() {
             let dofs = dofs.get(block);
             if dofs > 0 {
                 let (range, at) = (self.problem.state_range(block), offset.get(block));
-                let step = &scratch[at..at + dofs];
-                self.problem.retract(block, &state[range.clone()], step, &mut trial[range]);
+                let step = scratch.part(at..at + dofs);
+                self.problem.retract(block, state.part(range.clone()), step, trial.part_mut(range));
             }
         }
     }
@@ -392,16 +393,16 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         let mut at = 0;
         while at < elements {
             let count = width.min(elements - at);
-            let slots = &mut slots[..2 * count];
+            let slots = slots.part_mut(..2 * count);
             self.executor.run(slots, 2, &|index, slot| {
-                slot.copy_from_slice(&problem.sums(at + index, trial));
+                slot.copy(&problem.sums(at + index, trial));
             });
-            for slot in slots.chunks_exact(2) {
-                if !(slot[0].is_finite() && slot[1].is_finite()) {
+            for &[own, second] in slots.as_chunks().0 {
+                if !(own.is_finite() && second.is_finite()) {
                     return Coupled::plain([f64::INFINITY; 2]);
                 }
-                sums[0] += slot[0];
-                sums[1] += slot[1];
+                sums[0] += own;
+                sums[1] += second;
             }
             at += count;
         }
@@ -431,7 +432,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         for block in 0..problem.blocks() {
             let (from, dofs) = (offset.get(block), dofs.get(block));
             if dofs > 0 {
-                problem.natural_sizes(block, state, &mut sizes[from..from + dofs]);
+                problem.natural_sizes(block, state, sizes.part_mut(from..from + dofs));
             }
         }
         gradient.fill(0.0);
@@ -442,31 +443,32 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         let mut at = 0;
         while at < elements {
             let count = width.min(elements - at);
-            let slots = &mut slots[..count * *slot_len];
+            let slots = slots.part_mut(..count * *slot_len);
             self.executor.run(slots, *slot_len, &|index, slot| {
                 let (_, local) = local_unknowns(problem, dofs, at + index);
                 slot.fill(0.0);
-                let (own, rest) = slot.split_at_mut(2);
-                let (gradient, rest) = rest.split_at_mut(local);
-                let (second, rest) = rest.split_at_mut(if coupled { local } else { 0 });
-                let matrix = &mut rest[..packed_len(local)];
+                let (own, rest) = slot.cut_mut(2);
+                let (gradient, rest) = rest.cut_mut(local);
+                let (second, rest) = rest.cut_mut(if coupled { local } else { 0 });
+                let matrix = rest.part_mut(..packed_len(local));
                 let sums = problem.linearise_sums(at + index, state, first, gradient, second, matrix);
-                own.copy_from_slice(&sums);
+                own.copy(&sums);
             });
-            for (index, slot) in slots.chunks_exact(*slot_len).enumerate() {
+            for (index, slot) in slots.chunks_exact((*slot_len).max(1)).enumerate() {
                 let (list, local) = local_unknowns(problem, dofs, at + index);
-                let (own, rest) = slot.split_at(2);
-                let (local_gradient, rest) = rest.split_at(local);
-                let (local_second, local_matrix) = rest.split_at(if coupled { local } else { 0 });
-                sums[0] += own[0];
-                sums[1] += own[1];
+                let (own, rest) = slot.cut(2);
+                let (local_gradient, rest) = rest.cut(local);
+                let (local_second, local_matrix) = rest.cut(if coupled { local } else { 0 });
+                sums[0] += own.at(0);
+                sums[1] += own.at(1);
                 let mut i = 0;
                 for &row_block in &list {
                     let row_from = offset.get(row_block);
                     for row in row_from..row_from + dofs.get(row_block) {
-                        gradient[row] += local_gradient[i] * sizes[row];
+                        let size = sizes.at(row);
+                        gradient.add(row, local_gradient.at(i) * size);
                         if coupled {
-                            second_gradient[row] += local_second[i] * sizes[row];
+                            second_gradient.add(row, local_second.at(i) * size);
                         }
                         let mut j = 0;
                         'columns: for &column_block in &list {
@@ -475,7 +477,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                                 if j > i {
                                     break 'columns;
                                 }
-                                let entry = local_matrix[packed(i, j)] * sizes[row] * sizes[column];
+                                let entry = local_matrix.at(packed(i, j)) * size * sizes.at(column);
                                 envelope.add(matrix, row.max(column), row.min(column), entry);
                                 j += 1;
                             }
@@ -490,9 +492,9 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         for block in 0..problem.blocks() {
             for row in offset.get(block)..offset.get(block) + problem.held(block) {
                 envelope.isolate(matrix, row);
-                gradient[row] = 0.0;
+                gradient.put(row, 0.0);
                 if coupled {
-                    second_gradient[row] = 0.0;
+                    second_gradient.put(row, 0.0);
                 }
             }
         }

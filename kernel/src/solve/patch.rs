@@ -8,6 +8,7 @@ use super::descent::{Derivatives, Descent, Part, Varied};
 use super::problem::{BlockList, Problem};
 use super::relax::{is_private, totals};
 use super::workspace::Workspace;
+use crate::total::Total;
 
 /// Takes up to `steps` steps in every patch of the trial state, one after the other, until a step promises to lower the
 /// objective by less than `enough`. `work.spare` is scratch. Returns how often an element was linearised.
@@ -17,7 +18,7 @@ pub(super) fn relax<P: Problem + ?Sized>(
     steps: usize,
     enough: f64,
 ) -> usize {
-    work.spare.copy_from_slice(work.trial);
+    work.spare.copy(work.trial);
     let mut totals = totals(problem, work.trial);
     let mut linearisations = 0;
     for block in (0..problem.blocks()).filter(|&block| problem.is_loose(block)) {

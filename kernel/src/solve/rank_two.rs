@@ -16,6 +16,7 @@
 
 use super::envelope::{Allow, Envelope, Factored, dot};
 use crate::root::sqrt;
+use crate::total::Total;
 
 /// The gradients, the matrix between them, and room for `Y`.
 pub(super) struct RankTwo<'a> {
@@ -48,7 +49,7 @@ impl<'a> RankTwo<'a> {
     /// Takes a new factorisation. Returns whether the whole matrix is positive definite.
     pub(super) fn take(&mut self, envelope: &Envelope<'_, '_>, factor: &[f64], factored: Factored) -> bool {
         for (solved, gradient) in self.solved.iter_mut().zip(self.gradients) {
-            solved.copy_from_slice(gradient);
+            solved.copy(gradient);
             envelope.solve(factor, factored, solved);
         }
         let m: [[f64; 2]; 2] =

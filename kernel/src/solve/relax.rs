@@ -9,6 +9,7 @@ use super::descent::{Derivatives, Descent, Part, Varied};
 use super::minimise::NO_COST;
 use super::problem::{BlockList, Problem};
 use super::workspace::{Indices, Workspace};
+use crate::total::Total;
 
 /// Takes up to `steps` steps in every element of the trial state, one after the other, until a step promises to lower the
 /// objective by less than `enough`. `work.spare` is scratch. Returns how often an element was linearised.
@@ -18,7 +19,7 @@ pub(super) fn relax<P: Problem + ?Sized>(
     steps: usize,
     enough: f64,
 ) -> usize {
-    work.spare.copy_from_slice(work.trial);
+    work.spare.copy(work.trial);
     let mut totals = totals(problem, work.trial);
     let mut linearisations = 0;
     for element in 0..problem.elements() {
@@ -51,11 +52,11 @@ pub(super) fn explore<P: Problem + ?Sized>(
 ) -> usize {
     // What is not enough to be preferred need not be found to more digits.
     let enough = 0.1 * BETTER * value.abs() / problem.elements().max(1) as f64;
-    work.trial.copy_from_slice(state);
+    work.trial.copy(state);
     let mut linearisations = relax(problem, work, steps, enough);
-    work.best.copy_from_slice(work.trial);
+    work.best.copy(work.trial);
     for variant in 0..problem.variants() {
-        work.trial.copy_from_slice(state);
+        work.trial.copy(state);
         for element in 0..problem.elements() {
             problem.vary(element, variant, work.trial);
         }
@@ -70,7 +71,7 @@ pub(super) fn explore<P: Problem + ?Sized>(
                 problem.element_blocks(element, &mut list);
                 for &block in list.iter().filter(|&&block| is_private(&work.starts, block)) {
                     let range = problem.state_range(block);
-                    work.best[range.clone()].copy_from_slice(&work.trial[range]);
+                    work.best.part_mut(range.clone()).copy(work.trial.part(range));
                 }
             }
         }

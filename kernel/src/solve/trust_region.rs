@@ -7,6 +7,7 @@
 use super::envelope::{Allow, Envelope, Factored, dot};
 use super::rank_two::RankTwo;
 use crate::root::sqrt;
+use crate::total::Total;
 
 /// The radius of a trust region, and how it learns from steps.
 #[derive(Clone, Copy, Debug)]
@@ -71,7 +72,7 @@ impl Vectors<'_> {
 
     /// `stepᵀ (matrix + shift)⁻¹ step` of the factored matrix.
     fn steepness(&mut self, envelope: &Envelope<'_, '_>, factored: Factored) -> f64 {
-        self.scratch.copy_from_slice(self.step);
+        self.scratch.copy(self.step);
         if let Some(coupling) = &self.coupling {
             envelope.solve(self.factor, factored, self.scratch);
             coupling.correct(self.scratch);

@@ -1,6 +1,7 @@
 //! The memory of a solve: one layout function that sizes it and carves it.
 
 use super::problem::{Problem, packed_len};
+use crate::total::Total;
 
 /// The workspace was shorter than the solve needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,7 +99,7 @@ impl Layout {
         }
         let mut rest = memory;
         let parts = self.parts().map(|len| {
-            let (part, tail) = core::mem::take(&mut rest).split_at_mut(len);
+            let (part, tail) = core::mem::take(&mut rest).cut_mut(len);
             rest = tail;
             part
         });
@@ -198,12 +199,12 @@ impl<'a> Indices<'a> {
 
     #[inline]
     pub(crate) fn get(&self, at: usize) -> usize {
-        self.0[at].to_bits() as usize
+        self.0.at(at).to_bits() as usize
     }
 
     #[inline]
     pub(crate) fn set(&mut self, at: usize, value: usize) {
-        self.0[at] = f64::from_bits(value as u64);
+        self.0.put(at, f64::from_bits(value as u64));
     }
 
     pub(crate) fn len(&self) -> usize {

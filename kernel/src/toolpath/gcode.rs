@@ -21,6 +21,7 @@
 
 use core::fmt::{self, Write};
 
+use super::figure::RoundedUp;
 use super::{Arcs, Chord, Chords, Move, PathError, Segment, arcs, chords};
 use crate::curve::Element;
 use crate::root::sqrt;
@@ -193,7 +194,8 @@ impl fmt::Display for GcodeError {
             Self::ToleranceBelowDecimals { finest } => {
                 write!(
                     f,
-                    "the tolerance is too small for the decimals: give at least {finest:e} or more decimals"
+                    "the tolerance is too small for the decimals: give at least {} or more decimals",
+                    RoundedUp(finest)
                 )
             }
             Self::Decimals => write!(f, "the number of decimals must be 6 to 9"),
@@ -201,7 +203,11 @@ impl fmt::Display for GcodeError {
             Self::PlungeFeed => write!(f, "the plunge feed must be positive, finite and not round to zero"),
             Self::Depth => write!(f, "the depth is not finite or too large for the printed decimals"),
             Self::SafeHeight { cut } => {
-                write!(f, "the safe height must be finite and above the cut, which reaches {cut}")
+                write!(
+                    f,
+                    "the safe height must be finite and above the cut, which reaches {}",
+                    RoundedUp(cut)
+                )
             }
             Self::CoordinateTooLarge { element } => {
                 write!(f, "element {element} has a coordinate too large for the printed decimals")

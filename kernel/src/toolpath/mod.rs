@@ -14,6 +14,7 @@
 //! there, exactly.
 
 mod biarc;
+mod figure;
 mod flatten;
 mod gcode;
 
@@ -22,6 +23,8 @@ pub use flatten::{Chord, Chords, chords};
 pub use gcode::{GcodeError, GcodeOptions, Motion, Plane, Summary, Units, write_gcode};
 
 use core::fmt;
+
+use figure::RoundedUp;
 
 use crate::basis::bernstein::{Bernstein, Dyadic};
 use crate::curve::Element;
@@ -84,7 +87,11 @@ impl fmt::Display for PathError {
             Self::NoElements => write!(f, "the curve has no elements"),
             Self::Tolerance => write!(f, "the tolerance must be a positive, finite length"),
             Self::ToleranceTooFine { finest } => {
-                write!(f, "the tolerance is finer than numbers of this size allow: give at least {finest:e}")
+                write!(
+                    f,
+                    "the tolerance is finer than numbers of this size allow: give at least {}",
+                    RoundedUp(finest)
+                )
             }
             Self::NotFinite { element } => {
                 write!(f, "element {element} has a coordinate that is not finite or beyond 1e100")

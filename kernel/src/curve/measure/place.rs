@@ -17,8 +17,9 @@ use nalgebra::Vector3;
 pub fn at(elements: &[Element], element: usize, t: f64) -> Result<CurvePoint, MeasureError> {
     check(elements)?;
     let mut found = properties(elements, element, t, plane_normal(elements))?;
-    let (rows, unit) = normalised(&elements[element]);
-    found.arc_length = length(&elements[..element]) + unit * part_length(&rows, t);
+    let (before, rest) = elements.split_at_checked(element).ok_or(MeasureError::OutOfRange)?;
+    let (rows, unit) = normalised(rest.first().ok_or(MeasureError::OutOfRange)?);
+    found.arc_length = length(before) + unit * part_length(&rows, t);
     Ok(found)
 }
 
@@ -34,17 +35,17 @@ pub fn at_length(elements: &[Element], s: f64) -> Result<CurvePoint, MeasureErro
         return Err(MeasureError::OutOfRange);
     }
     let mut before = 0.0;
-    let mut place = elements.len() - 1;
+    let mut found = None;
     for (index, element) in elements.iter().enumerate() {
         let (rows, unit) = normalised(element);
+        found = Some((index, rows, unit));
         let own = unit * part_length(&rows, 1.0);
         if s < before + own || index + 1 == elements.len() {
-            place = index;
             break;
         }
         before += own;
     }
-    let (rows, unit) = normalised(&elements[place]);
+    let (place, rows, unit) = found.ok_or(MeasureError::NoElements)?;
     let wanted = ((s - before) / unit).max(0.0);
     // Newton's method on the arc length, kept between bounds that close in.
     let (mut low, mut high) = (0.0, 1.0);

@@ -112,7 +112,7 @@ pub fn curvature_range(elements: &[Element]) -> Result<[CurvePoint; 2], MeasureE
 /// [`MeasureError::NoElements`], [`MeasureError::NotFinite`].
 pub fn bounding_box(elements: &[Element]) -> Result<[[f64; 3]; 2], MeasureError> {
     check(elements)?;
-    let mut corners = [elements[0].rows[0]; 2];
+    let mut corners = [elements.first().ok_or(MeasureError::NoElements)?.rows[0]; 2];
     let mut take = |d: usize, x: f64| {
         corners[0][d] = corners[0][d].min(x);
         corners[1][d] = corners[1][d].max(x);

@@ -7,6 +7,7 @@ use crate::curve::fairness::{Density, Shape};
 use crate::curve::model::Model;
 use crate::root::sqrt;
 use crate::solve::{Allow, Envelope, Indices, dot};
+use crate::total::Total;
 use nalgebra::SVector;
 
 /// The most unknowns of a joint: direction and curvature on either side.
@@ -166,7 +167,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
             if !span.close(tables, alone, usize::from(bent == Some(index))) {
                 return None;
             }
-            span.store(&mut memory[4..]);
+            span.store(memory.part_mut(4..));
         }
         Some(chain)
     }
@@ -183,8 +184,8 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
         if memory.len() < memory_len(N, joints, count, closed) {
             return None;
         }
-        let (spans, rest) = memory.split_at_mut(count * stride(N));
-        let (offset, rest) = rest.split_at_mut(joints);
+        let (spans, rest) = memory.cut_mut(count * stride(N));
+        let (offset, rest) = rest.cut_mut(joints);
         // A ring is cut open at its first joint, whose unknowns come last.
         let mut offsets = Indices::new(offset);
         let mut unknowns = 0;
@@ -194,25 +195,25 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
             unknowns += joint_unknowns(model, joint);
         }
         for (index, memory) in spans.chunks_exact_mut(stride(N)).enumerate() {
-            for (kind, place) in memory[..4].iter_mut().enumerate() {
+            for (kind, place) in memory.iter_mut().take(4).enumerate() {
                 let (end, bends) = (kind / 2, kind % 2 == 1);
                 let joint = model.node(index, end);
                 *place = rank(model, joint, 1 - end, bends)
                     .map_or(FIXED, |rank| (offsets.get(joint) + rank) as f64);
             }
         }
-        let (first, rest) = rest.split_at_mut(unknowns);
-        let (start, rest) = rest.split_at_mut(unknowns);
-        let (gradient, rest) = rest.split_at_mut(unknowns);
-        let (step, rest) = rest.split_at_mut(unknowns);
-        let (length_gradient, rest) = rest.split_at_mut(unknowns);
-        let (pulled, rest) = rest.split_at_mut(unknowns);
+        let (first, rest) = rest.cut_mut(unknowns);
+        let (start, rest) = rest.cut_mut(unknowns);
+        let (gradient, rest) = rest.cut_mut(unknowns);
+        let (step, rest) = rest.cut_mut(unknowns);
+        let (length_gradient, rest) = rest.cut_mut(unknowns);
+        let (pulled, rest) = rest.cut_mut(unknowns);
         let (mut row_first, mut row_start) = (Indices::new(first), Indices::new(start));
         for row in 0..unknowns {
             row_first.set(row, row);
         }
         for memory in spans.chunks_exact(stride(N)) {
-            let places = &memory[..4];
+            let (places, _) = memory.cut(4);
             let free = || places.iter().filter(|&&place| place >= 0.0);
             let low = free().fold(f64::INFINITY, |low, &place| low.min(place));
             for &place in free() {
@@ -225,11 +226,8 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
             row_start.set(row, entries);
             entries += row - row_first.get(row) + 1;
         }
-        if rest.len() < 2 * entries {
-            return None;
-        }
-        let (matrix, rest) = rest.split_at_mut(entries);
-        let factor = &mut rest[..entries];
+        let (matrix, rest) = rest.split_at_mut_checked(entries)?;
+        let factor = rest.get_mut(..entries)?;
         let sums = [0.0; 3];
         Some(Self {
             tables,
@@ -248,7 +246,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
     }
 
     pub(super) fn span(&self, index: usize) -> Span<N> {
-        Span::load(&self.spans[index * stride(N) + 4..])
+        Span::load(self.spans.part(index * stride(N) + 4..))
     }
 
     /// A joint's end of a span, from what it was: its point stands, and its tangent where that is given. `along` is the
@@ -263,17 +261,17 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
     ) -> End<D> {
         let mut this = *was;
         // Whether its direction is an unknown.
-        if self.spans[index * stride(N) + 2 * end] >= 0.0 {
-            turn(&mut this, along, span.shared[2 * end]);
+        if self.spans.at(index * stride(N) + 2 * end) >= 0.0 {
+            turn(&mut this, along, span.shared.at(2 * end));
         }
-        this.curvature[0] = span.shared[2 * end + 1];
+        this.curvature.put(0, span.shared.at(2 * end + 1));
         this
     }
 
     /// The weighed integrals.
     pub(super) fn integral(&self, weigh: &Weigh) -> f64 {
         let spans = self.spans.chunks_exact(stride(N));
-        spans.map(|memory| Span::<N>::load(&memory[4..]).integral(self.tables, weigh)).sum()
+        spans.map(|memory| Span::<N>::load(memory.part(4..)).integral(self.tables, weigh)).sum()
     }
 
     /// `∫ θ''² ds`, `∫ θ'² ds` and the length.
@@ -288,7 +286,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
     }
 
     pub(super) fn length(&self) -> f64 {
-        self.spans.chunks_exact(stride(N)).map(|memory| Span::<N>::load(&memory[4..]).length()).sum()
+        self.spans.chunks_exact(stride(N)).map(|memory| Span::<N>::load(memory.part(4..)).length()).sum()
     }
 
     /// Gradient and Hessian; returns how far the spans are from closing.
@@ -301,28 +299,28 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
         let envelope = Envelope::Rows { first: &self.row_first, start: &self.row_start };
         let mut gap = 0.0f64;
         for memory in self.spans.chunks_exact_mut(stride(N)) {
-            let (places, rest) = memory.split_at_mut(4);
-            let (values, follow) = rest.split_at_mut(Span::<N>::LEN);
+            let (places, rest) = memory.cut_mut(4);
+            let (values, follow) = rest.cut_mut(Span::<N>::LEN);
             let Condensed { gradient, length_gradient, hessian, follow: found, gap: own_gap, sums, left_out } =
                 condense(self.tables, &Span::load(values), weigh, curvature, exact)?;
             for (to, row) in follow.chunks_exact_mut(COLUMNS).zip(&found) {
-                to.copy_from_slice(row);
+                to.copy(row);
             }
             gap = gap.max(own_gap);
             self.left_out += left_out;
             for k in 0..3 {
                 self.sums[k] += sums[k];
             }
-            for f in 0..4 {
-                if places[f] < 0.0 {
+            for (f, &place) in places.iter().enumerate().take(4) {
+                if place < 0.0 {
                     continue;
                 }
-                let row = places[f] as usize;
-                self.gradient[row] += gradient[f];
-                self.length_gradient[row] += length_gradient[f];
-                for e in 0..4 {
-                    if places[e] >= 0.0 && places[e] <= places[f] {
-                        envelope.add(self.matrix, row, places[e] as usize, hessian[f][e]);
+                let row = place as usize;
+                self.gradient.add(row, gradient[f]);
+                self.length_gradient.add(row, length_gradient[f]);
+                for (e, &other) in places.iter().enumerate().take(4) {
+                    if other >= 0.0 && other <= place {
+                        envelope.add(self.matrix, row, other as usize, hessian[f][e]);
                     }
                 }
             }
@@ -352,7 +350,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
             for curvature in [1.0, 0.0] {
                 let Some(found) = self.linearise(weigh, curvature, effort.exact) else { continue };
                 let envelope = Envelope::Rows { first: &self.row_first, start: &self.row_start };
-                let norm = envelope.norm(self.matrix, &mut self.factor[..unknowns]);
+                let norm = envelope.norm(self.matrix, self.factor.part_mut(..unknowns));
                 // Longer than it would like to be, a curve is under negative tension: it is held by its length.
                 let allow = if matches!(law, Law::Length(_)) { Allow::OneNegative } else { Allow::Definite };
                 let Ok(factored) = envelope.factor(self.matrix, norm, 0.0, allow, self.factor) else {
@@ -397,11 +395,11 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
             let mut length = 0.0;
             for memory in self.spans.chunks_exact_mut(stride(N)) {
                 let step = own_step(memory, self.step);
-                let (values, follow) = memory[4..].split_at_mut(Span::<N>::LEN);
+                let (values, follow) = memory.part_mut(4..).cut_mut(Span::<N>::LEN);
                 let mut span = Span::<N>::load(values);
                 let before = span.own[0];
                 span.advance(&step, change, follow, by);
-                span.own[0] = span.own[0].clamp(0.5 * before, 2.0 * before);
+                span.own[0] = span.own[0].max(0.5 * before).min(2.0 * before);
                 length += span.length();
                 span.store(values);
             }
@@ -446,7 +444,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
             Law::Plain => 0.0,
             Law::Length(target) => {
                 // Not more than a tenth at a time.
-                let next = target.clamp(0.9 * length, 1.1 * length);
+                let next = target.max(0.9 * length).min(1.1 * length);
                 (next - length - change[0]) / change[1]
             }
             Law::Power(power) => {
@@ -470,7 +468,10 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
 
 /// What of a step belongs to a span.
 fn own_step(places: &[f64], step: &[f64]) -> [f64; 4] {
-    core::array::from_fn(|f| if places[f] >= 0.0 { step[places[f] as usize] } else { 0.0 })
+    core::array::from_fn(|f| {
+        let place = places.at(f);
+        if place >= 0.0 { step.at(place as usize) } else { 0.0 }
+    })
 }
 
 /// What the tension is to be.

@@ -3,6 +3,7 @@
 use super::functions::{BEYOND, Tables, rough_sine_cosine, sine_cosine};
 use crate::basis::lanes::Lanes;
 use crate::root::sqrt;
+use crate::total::Total;
 
 /// A span: its chord's length, the directions at its ends against the chord and the curvatures there, `φ₀, κ₀, φ₁, κ₁`,
 /// and its own values: `λ = L/chord`, then the coefficients of the functions beyond the cubics.
@@ -106,15 +107,15 @@ impl<const N: usize> Span<N> {
     pub(super) const LEN: usize = 5 + N - 3;
 
     pub(super) fn store(&self, to: &mut [f64]) {
-        to[0] = self.chord;
-        to[1..5].copy_from_slice(&self.shared);
-        to[5..N + 2].copy_from_slice(&self.own[..N - 3]);
+        to.put(0, self.chord);
+        to.part_mut(1..5).copy(&self.shared);
+        to.part_mut(5..N + 2).copy(&self.own[..N - 3]);
     }
 
     pub(super) fn load(from: &[f64]) -> Self {
         let mut own = [0.0; N];
-        own[..N - 3].copy_from_slice(&from[5..N + 2]);
-        Self { chord: from[0], shared: core::array::from_fn(|i| from[1 + i]), own }
+        own[..N - 3].copy(from.part(5..N + 2));
+        Self { chord: from.at(0), shared: core::array::from_fn(|i| from.at(1 + i)), own }
     }
 
     /// `∫ θ'² du`, the square of the turning where that is even.
@@ -369,7 +370,7 @@ pub(super) fn condense<const N: usize, const C: usize>(
         let own_x = with_x[f] + to_l[f] * lx + to_x[f] * xx;
         gradient[f] = by * by_q[i] + own_l * off[0] + own_x * off[1];
         for e in 0..=f {
-            reduced[f][e] = by * scale(e) * h[i][place(e)]
+            reduced[f][e] = by * scale(e) * h[i].at(place(e))
                 + own_l * to_l[e]
                 + own_x * to_x[e]
                 + to_l[f] * with_l[e]
