@@ -1,6 +1,7 @@
 # make coving        the main job: the coving of the thesis from data to NC path and picture, in coving/
 # make test          everything that is promised, checked (Rust, a C and C++ compiler, Ceres)
 # make test-clients  the same with heavy real clients (LinuxCNC's interpreter)
+# make no-panic      proves at link time that no function of the C library can panic
 # make lint          formatting, clippy, documentation
 # make header        writes include/minvar.h anew
 # make table         Appendix A of the thesis: published, ours, Ceres; iterations from the data alone
@@ -22,10 +23,10 @@ OUT := coving
 LIB := target/release/libminvar.a
 WARN := -std=c11 -Wall -Wextra -Wpedantic -Wconversion -Werror
 
-.PHONY: coving test test-clients lint header help tools lib examples table random bench profile peer-tools memory pictures figures clean
+.PHONY: coving test test-clients lint header no-panic help tools lib examples table random bench profile peer-tools memory pictures figures clean
 
 help:
-	@sed -n 's/^# \{0,1\}//p' Makefile | head -15
+	@sed -n 's/^# \{0,1\}//p' Makefile | head -16
 
 tools:
 	@command -v $(CARGO) >/dev/null || { echo "minvar needs Rust 1.89 or later: https://rustup.rs" >&2; exit 1; }
@@ -140,6 +141,10 @@ lint: tools
 	$(CARGO) clippy --locked --workspace --exclude minvar-ffi --all-targets -- -D warnings
 	$(CARGO) clippy --locked -p minvar-ffi -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --workspace --exclude minvar-ffi --no-deps
+
+no-panic: tools
+	@scripts/need.sh $(CC) gcc "the linker"
+	scripts/no_panic.sh
 
 header: tools
 	touch ffi/build.rs

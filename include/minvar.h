@@ -18,6 +18,8 @@
  *            it returns is to be freed.
  * Threads    Any number may call at once, each with its own memory; input may be shared. Callbacks come on the thread
  *            that called, before the call returns.
+ * Panics     None: in the library as it is released no path leads to one. A callback must return: it may neither throw
+ *            through the library nor jump out of it.
  * Numbers    NaN, infinities and constants that are not defined come back as codes. The same input gives the same bits
  *            on every machine with IEEE 754 doubles in the default rounding mode.
  *

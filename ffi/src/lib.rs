@@ -43,10 +43,20 @@ pub extern "C" fn minvar_abi_check(abi: u32) -> i32 {
     i32::from(abi == MINVAR_ABI)
 }
 
+// No function of the library can come here, which is proven where it is linked with a handler that does not exist
+// (scripts/no_panic.sh). A library without a handler is none, though.
 #[cfg(not(test))]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
-    #[cfg(not(target_os = "none"))]
+    #[cfg(minvar_proof)]
+    {
+        unsafe extern "C" {
+            fn minvar_can_panic() -> !;
+        }
+        // SAFETY: a program in which this is reachable cannot be linked.
+        unsafe { minvar_can_panic() }
+    }
+    #[cfg(all(not(minvar_proof), not(target_os = "none")))]
     {
         unsafe extern "C" {
             fn abort() -> !;
@@ -54,6 +64,15 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
         // SAFETY: C's abort takes nothing and does not return.
         unsafe { abort() }
     }
-    #[cfg(target_os = "none")]
+    #[cfg(all(not(minvar_proof), target_os = "none"))]
     loop {}
+}
+
+/// What the proof must find: a function that panics.
+///
+/// cbindgen:ignore
+#[cfg(minvar_planted_panic)]
+#[unsafe(no_mangle)]
+pub extern "C" fn minvar_planted(index: usize) -> u8 {
+    [1, 2, 3][index]
 }

@@ -36,6 +36,14 @@
 //! The caller's. Solvers come as three calls: how much, here it is, solve. Too little is an error that says how much is
 //! needed. Any number of threads may solve at once, each in its own memory.
 //!
+//! # No panic
+//!
+//! Built for release, no function of the C library can panic, abort or allocate, whatever numbers, sizes and codes it is
+//! given: a library in which a panic were reachable would not link (`make no-panic`). The same code serves Rust; what can
+//! panic here is what the caller brings: an [`Executor`](solve::Executor), an [`Observer`](solve::Observer), a
+//! [`Problem`](solve::Problem), a writer. An index that were out of range, a defect of this crate, is found where debug
+//! assertions are on, as in all tests; in a release build it reads as zero and writes nothing.
+//!
 //! # Status is not error
 //!
 //! An error means that nothing was computed: bad input, found before any work. A [status](solve::Status) tells how a

@@ -165,8 +165,8 @@ impl<P: Problem + ?Sized> Descent<'_, P> {
                 let Coupled { value: found, second: c, .. } = self.objective(sums);
                 value = found;
                 for row in 0..count {
-                    for column in 0..=row {
-                        let Some(entry) = matrix.get_mut(packed(row, column)) else { continue };
+                    let (entries, size) = (matrix.part_mut(packed(row, 0)..=packed(row, row)), sizes.at(row));
+                    for (column, (entry, other_size)) in entries.iter_mut().zip(sizes.iter()).enumerate() {
                         if coupled {
                             // The coupling's part of rank two, small enough to be added as it is.
                             let of = |at: usize| {
@@ -176,7 +176,7 @@ impl<P: Problem + ?Sized> Descent<'_, P> {
                             *entry += a[0] * (c[0][0] * b[0] + c[0][1] * b[1])
                                 + a[1] * (c[1][0] * b[0] + c[1][1] * b[1]);
                         }
-                        *entry *= sizes.at(row) * sizes.at(column);
+                        *entry *= size * other_size;
                     }
                 }
                 for (g, size) in gradient.iter_mut().zip(sizes.iter()) {

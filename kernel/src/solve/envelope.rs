@@ -165,9 +165,9 @@ impl Envelope<'_, '_> {
     pub(crate) fn forward(&self, factor: &[f64], x: &mut [f64]) {
         for r in 0..self.rows() {
             let (first, range) = self.row(r);
-            let (row, inverse_pivot) = factor.part(range).cut(r - first);
-            let sum = dot(row, x.part(first..r));
-            x.put(r, (x.at(r) - sum) * inverse_pivot.at(0));
+            let Some((inverse_pivot, row)) = factor.part(range).split_last() else { break };
+            let Some((value, known)) = x.part_mut(first..=r).split_last_mut() else { break };
+            *value = (*value - dot(row, known)) * inverse_pivot;
         }
     }
 
@@ -175,11 +175,11 @@ impl Envelope<'_, '_> {
     fn backward(&self, factor: &[f64], x: &mut [f64], rows: usize) {
         for r in (0..rows).rev() {
             let (first, range) = self.row(r);
-            let (row, inverse_pivot) = factor.part(range).cut(r - first);
-            let value = x.at(r) * inverse_pivot.at(0);
-            x.put(r, value);
-            for (entry, target) in row.iter().zip(x.part_mut(first..r)) {
-                *target -= entry * value;
+            let Some((inverse_pivot, row)) = factor.part(range).split_last() else { break };
+            let Some((value, targets)) = x.part_mut(first..=r).split_last_mut() else { break };
+            *value *= inverse_pivot;
+            for (entry, target) in row.iter().zip(targets) {
+                *target -= entry * *value;
             }
         }
     }
@@ -211,26 +211,35 @@ fn factor_by(
     let mut negative = None;
     for r in 0..rows {
         let (first, start) = place(r);
-        let (done, rest) = factor.cut_mut(start);
-        let row = rest.part_mut(..r - first + 1);
+        // A row that were not there would be one that cannot be factored.
+        let missing = Indefinite { row: r, pivot: f64::NAN };
+        let Some((done, rest)) = factor.split_at_mut_checked(start) else { return Err(missing) };
+        let Some(row) = rest.get_mut(..r - first + 1) else { return Err(missing) };
         row.copy(matrix.part(start..start + (r - first) + 1));
         for c in first..r {
             let (c_first, c_start) = place(c);
-            let (other, inverse_pivot) = done.part(c_start..c_start + (c - c_first) + 1).cut(c - c_first);
             let from = first.max(c_first);
-            let (known, rest) = row.cut_mut(c - first);
-            let Some(entry) = rest.first_mut() else { break };
-            let mut sum = dot(known.part(from - first..), other.part(from - c_first..));
+            let other = done.get(c_start..c_start + (c - c_first) + 1).and_then(<[f64]>::split_last);
+            let (Some((inverse_pivot, other)), Some((known, [entry, ..]))) =
+                (other, row.split_at_mut_checked(c - first))
+            else {
+                return Err(missing);
+            };
+            let (Some(known_part), Some(other_part)) =
+                (known.get(from - first..), other.get(from - c_first..))
+            else {
+                return Err(missing);
+            };
+            let mut sum = dot(known_part, other_part);
             if let Some(n) = negative.filter(|n| (from..c).contains(n)) {
                 sum -= 2.0 * known.at(n - first) * other.at(n - c_first);
             }
-            *entry = (*entry - sum) * inverse_pivot.at(0);
+            *entry = (*entry - sum) * inverse_pivot;
             if negative == Some(c) {
                 *entry = -*entry;
             }
         }
-        let (entries, diagonal) = row.cut_mut(r - first);
-        let Some(diagonal) = diagonal.first_mut() else { break };
+        let Some((diagonal, entries)) = row.split_last_mut() else { return Err(missing) };
         let mut pivot = *diagonal + shift - dot(entries, entries);
         if let Some(n) = negative.filter(|n| (first..r).contains(n)) {
             pivot += 2.0 * entries.at(n - first) * entries.at(n - first);
