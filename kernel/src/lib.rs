@@ -54,6 +54,7 @@
 
 pub mod basis;
 pub mod curve;
+mod order;
 mod root;
 pub mod solve;
 pub mod toolpath;

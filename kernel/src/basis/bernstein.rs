@@ -10,6 +10,7 @@
 //! polynomial of NaN, whose [`range`](Bernstein::range) is everything and whose [`roots`](Bernstein::roots)
 //! are an error.
 
+use crate::order::Order;
 use core::cell::Cell;
 use core::fmt;
 use core::ops::{Add, Mul, Sub};
@@ -188,8 +189,8 @@ impl Bernstein {
             if c.is_nan() {
                 return (f64::NEG_INFINITY, f64::INFINITY);
             }
-            low = low.min(c);
-            high = high.max(c);
+            low = low.smaller(c);
+            high = high.larger(c);
         }
         (low, high)
     }
@@ -215,7 +216,7 @@ impl Bernstein {
             if !c.is_finite() {
                 return Err(RootsError::NotFinite);
             }
-            size = size.max(c.abs());
+            size = size.larger(c.abs());
         }
         if size == 0.0 {
             return Err(RootsError::Zero);
@@ -237,7 +238,7 @@ impl Bernstein {
                 None
             } else if local.crosses_once(noise) {
                 Some(self.crossing(&derivative, a, b))
-            } else if here.width > FINEST && high.max(-low) > 2.0 * noise {
+            } else if here.width > FINEST && high.larger(-low) > 2.0 * noise {
                 cell = Some(here.left_half());
                 continue;
             } else {
@@ -292,7 +293,7 @@ impl Bernstein {
         if opposite(derivative.value(a), derivative.value(b)) {
             return derivative.crossing(&derivative.derivative(), a, b);
         }
-        if at_middle.abs() <= at_a.abs().min(at_b.abs()) {
+        if at_middle.abs() <= at_a.abs().smaller(at_b.abs()) {
             middle
         } else if at_a.abs() < at_b.abs() {
             a

@@ -15,6 +15,7 @@ use super::natural::TrueCurve;
 use super::passes::Passes;
 use super::rows::place;
 use super::start::refine;
+use crate::order::Order;
 use crate::root::sqrt;
 use crate::solve::{Outcome, Problem, Status, WorkspaceTooSmall};
 use crate::total::Total;
@@ -111,7 +112,7 @@ where
             }
         }
         if !divided {
-            let error = errors.iter().fold(0.0f64, |most, &error| most.max(error));
+            let error = errors.iter().fold(0.0f64, |most, &error| most.larger(error));
             if error > aim.tolerance {
                 outcome.status = Status::Stalled;
             }
@@ -150,7 +151,7 @@ where
             return Ok(Divided { outcome: found, error: f64::INFINITY });
         }
         // `errors` holds how far each span moved.
-        let moved = errors.iter().fold(0.0f64, |most, &moved| most.max(moved));
+        let moved = errors.iter().fold(0.0f64, |most, &moved| most.larger(moved));
         let before = moved * (HALVING / (HALVING - 1.0));
         if before <= aim.tolerance {
             return Ok(Divided { outcome, error: before });
@@ -232,9 +233,9 @@ fn compare<const D: usize>(
                 let t = (sample as f64 + 0.5) / SAMPLES as f64;
                 let [point, ..] = place(&rows, t);
                 let place = (element as f64 + t) / count * fine_count;
-                let part = libm::floor(place).min(fine_count - 1.0);
+                let part = libm::floor(place).smaller(fine_count - 1.0);
                 let rows = fine.rows(fine_first + part as usize, fine_state);
-                most = most.max(distance(&point, &rows, place - part));
+                most = most.larger(distance(&point, &rows, place - part));
             }
         }
         *error = most;

@@ -5,6 +5,7 @@ use super::error::{CurveError, Part};
 use super::joint::{Continuity, Curve, Given, Joint, Quantity};
 use super::obstacle::Side;
 use super::options::Options;
+use crate::order::Order;
 use crate::root::sqrt;
 use nalgebra::Vector3;
 
@@ -33,7 +34,7 @@ fn check_quantity(joint: usize, part: Part, quantity: &Quantity) -> Result<(), C
 
 /// The direction of a vector of any size but zero.
 pub(super) fn direction(vector: &[f64; 3]) -> Option<Vector3<f64>> {
-    let most = vector.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    let most = vector.iter().fold(0.0f64, |most, x| most.larger(x.abs()));
     if !(most > 0.0) {
         return None;
     }
@@ -104,7 +105,7 @@ pub(super) fn check(curve: &Curve<'_>) -> Result<f64, CurveError> {
     let mut extent = 0.0f64;
     for (_, joint) in points() {
         for (a, b) in joint.position.value.iter().zip(&first.position.value) {
-            extent = extent.max((a - b).abs());
+            extent = extent.larger((a - b).abs());
         }
     }
     if !(extent <= LARGEST_EXTENT) {
@@ -117,11 +118,11 @@ pub(super) fn check(curve: &Curve<'_>) -> Result<f64, CurveError> {
     for (joint, data) in points().chain(wrapped) {
         let here = data.position.value;
         if let Some((previous, there)) = before {
-            let step = here.iter().zip(&there).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+            let step = here.iter().zip(&there).fold(0.0f64, |most, (a, b)| most.larger((a - b).abs()));
             if !(step > COINCIDENT * extent) {
                 return Err(CurveError::CoincidentJoints { joint: previous, next: joint });
             }
-            longest = longest.max(step);
+            longest = longest.larger(step);
         }
         before = Some((joint, here));
     }

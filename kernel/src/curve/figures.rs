@@ -7,6 +7,7 @@ use crate::basis::hermite;
 use crate::basis::lanes::{Lanes, WIDTH};
 use crate::basis::mirrored::{pair_count, pairs};
 use crate::basis::quadrature::{FINEST, MAX_POINTS};
+use crate::order::Order;
 use crate::root::sqrt;
 use nalgebra::SVector;
 
@@ -107,7 +108,7 @@ impl Figures {
     ) where
         Shape<D>: Density<D>,
     {
-        let blur = 2.0 * f64::EPSILON * rows.iter().fold(0.0f64, |most, row| most.max(row.amax()));
+        let blur = 2.0 * f64::EPSILON * rows.iter().fold(0.0f64, |most, row| most.larger(row.amax()));
         let mut regular = true;
         for half in halves(rows) {
             let mut guard = Guard::of(pair_count(MAX_POINTS));

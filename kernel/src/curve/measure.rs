@@ -19,6 +19,7 @@ use super::rows;
 use crate::basis::bernstein::Bernstein;
 use crate::basis::hermite;
 use crate::basis::quadrature::FINEST;
+use crate::order::Order;
 use crate::root::sqrt;
 use core::fmt;
 use nalgebra::Vector3;
@@ -99,11 +100,11 @@ fn size_of(element: &Element) -> f64 {
     let mut most = 0.0f64;
     for row in &element.rows[1..5] {
         for x in row {
-            most = most.max(x.abs());
+            most = most.larger(x.abs());
         }
     }
     for (a, b) in element.rows[0].iter().zip(&element.rows[5]) {
-        most = most.max((a - b).abs());
+        most = most.larger((a - b).abs());
     }
     if !(most > 0.0 && most.is_finite()) {
         return most;

@@ -15,6 +15,7 @@ use super::rows::{Integrand, Mirrored, RowDerivatives};
 use super::space::Space;
 use super::torsion::SpaceFunctional;
 use crate::basis::mirrored::{pair_count, pairs};
+use crate::order::Order;
 use crate::root::sqrt;
 use crate::solve::{BlockList, Coupled, Problem, packed};
 use crate::total::Total;
@@ -452,7 +453,7 @@ impl<const D: usize> Model<'_, D> {
             let Some(at) = self.torsion_place(node) else { continue };
             let [[one, one_slope], [other, other_slope]] = self.torsions_at(node, state);
             let before = (node + count - 1) % count.max(1);
-            let speed = state.at(self.element_start(before) + 2).min(state.at(self.element_start(node)));
+            let speed = state.at(self.element_start(before) + 2).smaller(state.at(self.element_start(node)));
             let weight = tie / speed;
             state.put(at, 0.5 * (one + other));
             state.put(at + 1, -0.5 * (one_slope + other_slope) / weight);
@@ -469,7 +470,7 @@ impl<const D: usize> Model<'_, D> {
             let Some(at) = self.torsion_place(node) else { continue };
             let [[one, _], [other, _]] = self.torsions_at(node, state);
             state.add(at + 1, 0.5 * (one - other));
-            let jump = (one - other).abs() / scale.max(one.abs());
+            let jump = (one - other).abs() / scale.larger(one.abs());
             most = if jump > most { jump } else { most };
         }
         most
@@ -488,7 +489,7 @@ impl<const D: usize> Model<'_, D> {
         let mut least = f64::INFINITY;
         if let Some(space) = &self.space {
             for element in 0..self.element_count() {
-                least = least.min(space.least_curvature(&self.rows(element, state)));
+                least = least.smaller(space.least_curvature(&self.rows(element, state)));
             }
         }
         least
@@ -978,7 +979,7 @@ where
             let before = before.filter(|_| block > 0 || self.curve.closed);
             let after = Some(block).filter(|&element| element < self.element_count());
             let length = match (before, after) {
-                (Some(before), Some(after)) => speed(before, 1).min(speed(after, 0)),
+                (Some(before), Some(after)) => speed(before, 1).smaller(speed(after, 0)),
                 (Some(before), None) => speed(before, 1),
                 (None, Some(after)) => speed(after, 0),
                 (None, None) => 1.0,

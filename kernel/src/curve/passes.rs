@@ -6,6 +6,7 @@ use super::natural::{self, Improved, TrueCurve, Wish};
 use super::space::Space;
 use super::torsion::SpaceFunctional;
 use crate::basis::quadrature::MAX_POINTS;
+use crate::order::Order;
 use crate::solve::{
     self, Control, InOrder, Observer, Outcome, Problem, Record, Settings, Status, WorkspaceTooSmall,
 };
@@ -140,7 +141,8 @@ impl<'a> Passes<'a> {
         set_softness(model, varies || gentle);
         model.begin_ties(state);
         let [start_cost, _] = guard(model, state);
-        let natural = if start_cost > 0.0 { model.natural_cost.min(start_cost) } else { model.natural_cost };
+        let natural =
+            if start_cost > 0.0 { model.natural_cost.smaller(start_cost) } else { model.natural_cost };
         model.gauge = natural / model.element_count() as f64;
         model.slides = model.anchors.is_none();
         let outcome = self.minimise(model, SHAPING_DECREASE, [0, 0], 1.0, state, work)?;
@@ -174,7 +176,7 @@ impl<'a> Passes<'a> {
         let points = if model.chooses_points { MAX_POINTS } else { model.points };
         model.points = points.min(WORKING_POINTS);
         model.slides = !holds;
-        let outcome = self.finish_with(model, relative_decrease.max(WORKING_DECREASE), state, work)?;
+        let outcome = self.finish_with(model, relative_decrease.larger(WORKING_DECREASE), state, work)?;
         model.slides = true;
         model.points = points;
         let sums = guard(model, state);
@@ -280,8 +282,14 @@ impl<'a> Passes<'a> {
             if stubborn {
                 self.most = most.min(self.iterations + FEW);
             }
-            let mut outcome =
-                self.minimise(model, decrease.max(relative_decrease), [RELAXATION; 2], longest, state, work)?;
+            let mut outcome = self.minimise(
+                model,
+                decrease.larger(relative_decrease),
+                [RELAXATION; 2],
+                longest,
+                state,
+                work,
+            )?;
             self.most = most;
             model.goal = None;
             if stubborn && outcome.status == Status::IterationLimit && self.iterations < most {
@@ -375,7 +383,7 @@ impl<'a> Passes<'a> {
         }
         let sums = total(model, state);
         let value = model.couple(sums).value;
-        let excess = improved.left_out + improved.misfit.max(sums[0] - improved.integral);
+        let excess = improved.left_out + improved.misfit.larger(sums[0] - improved.integral);
         (SURE * excess <= relative_decrease * sums[0]).then_some(Outcome {
             status: Status::Converged,
             iterations: 0,

@@ -8,6 +8,7 @@ use super::check::direction;
 use super::element::Element;
 use super::error::CurveError;
 use super::joint::{Curve, Given, Joint};
+use crate::order::Order;
 use crate::root::sqrt;
 use crate::total::Total;
 use nalgebra::{SVector, Vector3};
@@ -164,7 +165,7 @@ fn vectors(curve: &Curve<'_>, origin: &Vector3<f64>, extent: f64, mut visit: imp
                 && let Some(towards) = direction(&quantity.value)
             {
                 let bend = Vector3::from(quantity.value).amax() * extent;
-                visit(towards * bend.min(1.0), 0.0);
+                visit(towards * bend.smaller(1.0), 0.0);
             }
         }
     }

@@ -8,6 +8,7 @@ use super::model::Model;
 use super::options::Options;
 use super::passes::{self, Passes};
 use crate::basis::quadrature::MAX_POINTS;
+use crate::order::Order;
 use crate::root::sqrt;
 use crate::solve::{Outcome, Problem, Status};
 use crate::total::Total;
@@ -95,7 +96,7 @@ where
     let figures = figures_of(model, state);
     let mut report = report(model, &outcome, elements, &figures, options);
     // Speeds alone tell little where a curve went wrong.
-    let growth = model.rough_length(state).max(figures.length) / model.start_length;
+    let growth = model.rough_length(state).larger(figures.length) / model.start_length;
     // Speeds grow, and so does a curve whose start was short: only its own length shows that a curve goes far.
     let reach = figures.length / data_length(model);
     let lost = if reach >= SHOWN_GROWTH { Status::Unbounded } else { Status::Stalled };
@@ -241,7 +242,7 @@ where
         length,
         variation,
         bending,
-        gradient: outcome.gradient / outcome.value.max(f64::MIN_POSITIVE),
+        gradient: outcome.gradient / outcome.value.larger(f64::MIN_POSITIVE),
         decrement: outcome.decrement * scale,
     }
 }

@@ -18,6 +18,7 @@ use super::report::{Report, figures_of, functional_scale, hand_over};
 use super::space::Space;
 use super::start::{Start, adopt, refine};
 use crate::basis::quadrature::MAX_POINTS;
+use crate::order::Order;
 use crate::solve::{Observer, Outcome, Problem, Record, Status, WorkspaceTooSmall};
 use crate::total::Total;
 
@@ -301,7 +302,7 @@ where
         return Ok(report);
     }
     let tolerance =
-        if parts == 1 || options.tolerance > 0.0 { decrease } else { COARSE_DECREASE.max(decrease) };
+        if parts == 1 || options.tolerance > 0.0 { decrease } else { COARSE_DECREASE.larger(decrease) };
     let mut outcome = if improved.is_some() || options.continuation > 0 {
         passes.finish(&mut coarse, tolerance, coarse_state, work)
     } else {
@@ -595,8 +596,9 @@ mod tests {
                 &mut matrix[..solver::packed(count, 0)],
             );
             assert!((value - cost(&[])).abs() <= 1e-12 * value.abs());
-            let most = (0..count)
-                .fold(0.0f64, |most, i| most.max((matrix[solver::packed(i, i)] * sizes[i] * sizes[i]).abs()));
+            let most = (0..count).fold(0.0f64, |most, i| {
+                most.larger((matrix[solver::packed(i, i)] * sizes[i] * sizes[i]).abs())
+            });
             let h = 1e-4;
             for i in 0..count {
                 let slope = (cost(&[(i, h * sizes[i])]) - cost(&[(i, -h * sizes[i])])) / (2.0 * h);

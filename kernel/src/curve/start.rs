@@ -14,6 +14,7 @@ use super::joint::{Continuity, Given, Joint};
 use super::model::Model;
 use super::placement::Placement;
 use super::rows::place;
+use crate::order::Order;
 use crate::root::sqrt;
 use crate::total::Total;
 use nalgebra::SVector;
@@ -151,7 +152,7 @@ where
         let [a, b] = self.inverted(joint, state)?;
         let (a_unit, b_unit) = (unit(&a)?, unit(&b)?);
         if a_unit.dot(&b_unit) > 1.0 - STRAIGHT {
-            let farther = a.dot(&a).min(b.dot(&b));
+            let farther = a.dot(&a).smaller(b.dot(&b));
             return Some([perpendicular(&a_unit), a_unit * (2.0 * sqrt(farther))]);
         }
         let along = unit(&(b - a))?;
@@ -343,10 +344,11 @@ where
             let across = chord - t * along;
             libm::atan2(sqrt(across.dot(&across)), along)
         };
-        let turn = (angle(&ends[0].frame[0]) + angle(&ends[1].frame[0])).min(MOST_TURN);
+        let turn = (angle(&ends[0].frame[0]) + angle(&ends[1].frame[0])).smaller(MOST_TURN);
         let half = 0.5 * turn;
         let length = if half > 1e-4 { size * half / libm::sin(half) } else { size };
-        let bend = sqrt(ends.iter().map(|end| end.curvature_vector().norm_squared()).fold(0.0, f64::max));
+        let bend =
+            sqrt(ends.iter().map(|end| end.curvature_vector().norm_squared()).fold(0.0, Order::larger));
         if turn < GENTLE_TURN && bend * size < GENTLE_BEND {
             give_speeds(ends, length, turn);
             return;
@@ -524,7 +526,7 @@ fn end_of<const D: usize>(
     let speed = sqrt(first.dot(first));
     let tangent = unit(first).or(before.map(|end| end.frame[0])).unwrap_or_else(SVector::zeros);
     let along = second.dot(&tangent);
-    let curvature = (second - tangent * along) / (speed * speed).max(f64::MIN_POSITIVE);
+    let curvature = (second - tangent * along) / (speed * speed).larger(f64::MIN_POSITIVE);
     let frame = frame_of(&tangent, &curvature);
     let mut components = [0.0; D];
     for j in 1..D {

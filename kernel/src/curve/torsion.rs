@@ -475,6 +475,7 @@ fn add_identity(to: &mut Matrix, times: f64) {
 mod tests {
     extern crate std;
     use super::*;
+    use crate::order::Order;
     use SpaceFunctional::{Mec, Mvc};
     use std::vec::Vec;
 
@@ -526,8 +527,8 @@ mod tests {
             out
         };
         let (gradient, hessian) = derivatives(d);
-        let steepest = gradient.iter().fold(0.0f64, |most, g| most.max(g.amax()));
-        let most = hessian.iter().flatten().fold(0.0f64, |most, block| most.max(block.amax()));
+        let steepest = gradient.iter().fold(0.0f64, |most, g| most.larger(g.amax()));
+        let most = hessian.iter().flatten().fold(0.0f64, |most, block| most.larger(block.amax()));
         for k in 0..N {
             for i in 0..3 {
                 let difference = slope(4e-3, |x| value(&moved(k, i, x)));

@@ -7,6 +7,7 @@
 use super::problem::packed_len;
 use super::workspace::Indices;
 use crate::basis::lanes::{Lanes, WIDTH};
+use crate::order::Order;
 use crate::root::sqrt;
 use crate::total::Total;
 
@@ -111,7 +112,7 @@ impl Envelope<'_, '_> {
             }
             sums.add(r, own);
         }
-        sums.iter().fold(0.0, |most, &sum| most.max(sum))
+        sums.iter().fold(0.0, |most, &sum| most.larger(sum))
     }
 
     /// The product `out = matrix · vector`.

@@ -9,6 +9,7 @@ use super::report::{Control, Observer, Outcome, Record, Status};
 use super::trust_region::{self, Radius, Vectors};
 use super::workspace::{Indices, Layout, Workspace, WorkspaceTooSmall};
 use super::{patch, relax};
+use crate::order::Order;
 use crate::root::sqrt;
 use crate::total::Total;
 
@@ -199,7 +200,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         let mut explorations = if explores { MOST_EXPLORATIONS } else { 0 };
         let mut past = [f64::INFINITY; WINDOW];
         loop {
-            let gradient = self.work.gradient.iter().fold(0.0f64, |most, g| most.max(g.abs()));
+            let gradient = self.work.gradient.iter().fold(0.0f64, |most, g| most.larger(g.abs()));
             let floor = noise(value, natural);
             outcome = Outcome { value, gradient, linearisations: self.linearisations, ..outcome };
             let step = {

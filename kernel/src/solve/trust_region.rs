@@ -6,6 +6,7 @@
 
 use super::envelope::{Allow, Envelope, Factored, dot};
 use super::rank_two::RankTwo;
+use crate::order::Order;
 use crate::root::sqrt;
 use crate::total::Total;
 
@@ -129,7 +130,7 @@ pub(super) fn solve(
                     envelope.negative_direction(vectors.factor, &failure, vectors.direction);
                     let square = dot(vectors.direction, vectors.direction);
                     if failure.pivot.is_finite() && square.is_finite() {
-                        low = low.max(shift - failure.pivot / square);
+                        low = low.larger(shift - failure.pivot / square);
                         have_direction = vectors.coupling.is_none();
                     }
                 }
@@ -137,8 +138,8 @@ pub(super) fn solve(
             }
         };
         let Some(factored) = definite else {
-            low = low.max(shift);
-            high = high.max(low * 1.01 + 1e-300);
+            low = low.larger(shift);
+            high = high.larger(low * 1.01 + 1e-300);
             shift = between(low, high, last_shift);
             continue;
         };
@@ -152,11 +153,11 @@ pub(super) fn solve(
         }
         if length < radius {
             high = shift;
-            if have_direction && high - low <= 1e-3 * high.max(f64::MIN_POSITIVE) {
+            if have_direction && high - low <= 1e-3 * high.larger(f64::MIN_POSITIVE) {
                 return Some(to_boundary(envelope, matrix, vectors, radius, found));
             }
         } else {
-            low = low.max(shift);
+            low = low.larger(shift);
         }
         best = Some(found);
         let newton = shift + (square / vectors.steepness(envelope, factored)) * ((length - radius) / radius);
@@ -187,7 +188,7 @@ fn between(low: f64, high: f64, wanted: f64) -> f64 {
     if wanted > low && wanted < high {
         return wanted;
     }
-    sqrt(low * high).max(low + 0.01 * (high - low))
+    sqrt(low * high).larger(low + 0.01 * (high - low))
 }
 
 /// The hard case: the gradient has no part along the direction of negative curvature, so the shifted step stays

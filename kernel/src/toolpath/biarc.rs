@@ -24,6 +24,7 @@
 use super::{Chain, Kind, PathError, Position, flatten};
 use crate::basis::bernstein::{Bernstein, Dyadic};
 use crate::curve::Element;
+use crate::order::Order;
 use crate::root::sqrt;
 
 /// Arcs whose chord makes an angle with the end tangents whose cosine is below this are not made: they turn
@@ -374,18 +375,18 @@ fn prove(chain: &Chain<'_>, arc: &Arc, from: Position, to: Position) -> Option<f
             let error = x * n[0] + y * n[1] - (x * x + y * y) * (0.5 * k);
 
             let (low, high) = error.range();
-            let away = from_circle(low, k).max(from_circle(high, k));
+            let away = from_circle(low, k).larger(from_circle(high, k));
             let inside = forward.range().0 >= -allowed && beyond.range().1 <= allowed;
             if inside && away <= limit && away * k.abs() <= 0.25 {
-                greatest = greatest.max(away);
+                greatest = greatest.larger(away);
                 cell = here.next();
                 continue;
             }
             // Cutting helps only if the ends, which are points of the curve, are where they should be.
             let ends = [error.value(0.0), error.value(1.0)];
             let hopeless = ends.iter().any(|&e| from_circle(e, k) > limit)
-                || forward.value(0.0).min(forward.value(1.0)) < -allowed
-                || beyond.value(0.0).max(beyond.value(1.0)) > allowed;
+                || forward.value(0.0).smaller(forward.value(1.0)) < -allowed
+                || beyond.value(0.0).larger(beyond.value(1.0)) > allowed;
             if hopeless || here.width <= SHORTEST_PART {
                 return None;
             }
@@ -465,7 +466,7 @@ mod tests {
                     let (r0, r1) = (minus(arc.start, centre), minus(arc.end, centre));
                     let radius = sqrt(dot(r0, r0));
                     assert!((sqrt(dot(r1, r1)) - radius).abs() < 1e-14 * radius);
-                    assert!(dot(r1, arc.end_tangent).abs() < 1e-13 * radius.max(1.0));
+                    assert!(dot(r1, arc.end_tangent).abs() < 1e-13 * radius.larger(1.0));
                 }
             }
         }

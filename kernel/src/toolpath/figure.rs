@@ -9,8 +9,6 @@ pub(super) struct RoundedUp(pub(super) f64);
 
 /// The digits that are printed, as a factor.
 const DIGITS: f64 = 1e4;
-/// More than the rounding of the products that find the digits.
-const SAFETY: f64 = 1e-12;
 
 impl fmt::Display for RoundedUp {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -35,14 +33,23 @@ impl fmt::Display for RoundedUp {
             digits *= 10.0;
             exponent -= 1;
         }
-        let upwards = if number > 0.0 {
-            libm::ceil(digits * (1.0 - SAFETY))
-        } else {
-            libm::floor(digits * (1.0 + SAFETY))
+        // The products may have rounded to either side: the printed number as a reader gets it decides.
+        let mut power = 1.0;
+        for _ in 0..(exponent - 3).abs() {
+            power *= 10.0;
+        }
+        let read = |digits: f64| if exponent < 3 { digits / power } else { digits * power };
+        let nearest = libm::round(digits);
+        let digits = match (number > 0.0, read(nearest) >= size, read(nearest) <= size) {
+            (true, false, _) => nearest + 1.0,
+            (false, _, false) => nearest - 1.0,
+            _ => nearest,
         };
-        let mut digits = upwards as u32;
+        let mut digits = digits as u32;
         if digits >= 10_000 {
             (digits, exponent) = (1000, exponent + 1);
+        } else if digits < 1000 {
+            (digits, exponent) = (9999, exponent - 1);
         }
         let plain = (-3..=5).contains(&exponent);
         // Where the point stands: after so many digits.
@@ -91,12 +98,16 @@ mod tests {
             (0.0, "0"),
             (1.0, "1"),
             (-1.0, "-1"),
-            (1.66400e-5, "1.664e-5"),
+            (1.664e-5, "1.664e-5"),
             (1.66401e-5, "1.665e-5"),
             (-1.66409e-5, "-1.664e-5"),
             (0.001, "0.001"),
             (0.012345, "0.01235"),
             (0.5, "0.5"),
+            // One unit of the last bit above and below a number that has four digits.
+            (1.664_000_000_000_000_2e-5, "1.665e-5"),
+            (-1.000_000_000_000_000_2, "-1"),
+            (-0.999_999_999_999_999_9, "-0.9999"),
             (12.5, "12.5"),
             (99.991, "100"),
             (9999.1, "10000"),

@@ -9,6 +9,7 @@
 use super::{Chain, Kind, PathError, Position, distance};
 use crate::basis::bernstein::Dyadic;
 use crate::curve::Element;
+use crate::order::Order;
 
 /// Parts shorter than this share of an element's piece are not cut further to sharpen a bound.
 const SHORTEST_PART: f64 = 1.0 / 8.0;
@@ -109,13 +110,13 @@ fn bound(chain: &Chain<'_>, from: Position, to: Position, a: [f64; 3], b: [f64; 
             let points = x.coefficients().iter().zip(y.coefficients()).zip(z.coefficients());
             for (k, ((&x, &y), &z)) in points.enumerate() {
                 let away = distance_to_segment([x, y, z], a, b);
-                hull = hull.max(away);
+                hull = hull.larger(away);
                 if k == 0 || k == 5 {
-                    ends = ends.max(away);
+                    ends = ends.larger(away);
                 }
             }
             if hull <= chain.limit {
-                greatest = greatest.max(hull);
+                greatest = greatest.larger(hull);
                 cell = here.next();
             } else if ends <= chain.limit && here.width > SHORTEST_PART {
                 cell = Some(here.left_half());

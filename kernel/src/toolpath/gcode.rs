@@ -24,6 +24,7 @@ use core::fmt::{self, Write};
 use super::figure::RoundedUp;
 use super::{Arcs, Chord, Chords, Move, PathError, Segment, arcs, chords};
 use crate::curve::Element;
+use crate::order::Order;
 use crate::root::sqrt;
 
 /// The most that rounding moves a point, in units of the last decimal: √3 halves, and a fifth of it for the
@@ -260,7 +261,7 @@ pub fn write_gcode<W: Write>(
                 path.check()?;
                 return Err(GcodeError::CoordinateTooLarge { element });
             }
-            cut = cut.max(point[2] + options.depth);
+            cut = cut.larger(point[2] + options.depth);
         }
     }
     path.check()?;
@@ -460,7 +461,7 @@ impl<W: Write> Program<'_, W> {
             && mismatch <= MISMATCH * from_start
             && mismatch <= MISMATCH_LENGTH * self.grid.scale;
         let radius = 0.5 * (from_start + from_end);
-        let length = 2.0 * radius * libm::asin((0.5 * chord / radius).min(1.0)) / self.grid.scale;
+        let length = 2.0 * radius * libm::asin((0.5 * chord / radius).smaller(1.0)) / self.grid.scale;
         fits.then_some(PrintableArc { offset, length })
     }
 
@@ -479,7 +480,7 @@ impl<W: Write> Program<'_, W> {
         let chord_length = length(chord[0], chord[1]);
         let radius = length(start[0] - centre[0], start[1] - centre[1]);
         // Half the angle of the arc.
-        let half = libm::asin((0.5 * chord_length / radius).min(1.0));
+        let half = libm::asin((0.5 * chord_length / radius).smaller(1.0));
         // A chord of angle φ deviates by R(1 − cos(φ/2)) ≤ Rφ²/8; what is left is at least 3ρ.
         let left = self.options.tolerance - self.rho - segment.deviation;
         let whole = 0.5 * radius * half * half;
@@ -516,7 +517,7 @@ impl<W: Write> Program<'_, W> {
     }
 
     fn note(&mut self, deviation: f64, length: f64) {
-        self.summary.deviation = self.summary.deviation.max(deviation);
+        self.summary.deviation = self.summary.deviation.larger(deviation);
         self.summary.length += length;
     }
 

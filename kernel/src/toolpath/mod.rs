@@ -28,6 +28,7 @@ use figure::RoundedUp;
 
 use crate::basis::bernstein::{Bernstein, Dyadic};
 use crate::curve::Element;
+use crate::order::Order;
 use crate::root::sqrt;
 
 /// Joints that turn by more than this angle (radians) are corners.
@@ -160,7 +161,7 @@ impl<'a> Chain<'a> {
             if own.is_nan() || own > LARGEST {
                 return Err(PathError::NotFinite { element });
             }
-            size = one.bezier().iter().flatten().fold(size, |size, x| size.max(x.abs()));
+            size = one.bezier().iter().flatten().fold(size, |size, x| size.larger(x.abs()));
         }
         let finest = FINEST * size;
         if tolerance < finest {
@@ -173,13 +174,13 @@ impl<'a> Chain<'a> {
         let (mut gap, mut height) = (0.0_f64, 0.0_f64);
         let mut end = first.rows[0];
         for (element, one) in elements.iter().enumerate() {
-            gap = gap.max(distance(end, one.rows[0]));
+            gap = gap.larger(distance(end, one.rows[0]));
             if gap > allowed {
                 return Err(PathError::Gap { element });
             }
             end = one.rows[5];
             if kind == Kind::Arcs {
-                height = one.bezier().iter().fold(height, |height, p| height.max((p[2] - plane).abs()));
+                height = one.bezier().iter().fold(height, |height, p| height.larger((p[2] - plane).abs()));
                 if height > allowed {
                     return Err(PathError::NotPlanar { element });
                 }
@@ -266,14 +267,14 @@ impl<'a> Chain<'a> {
     ) -> Option<(Position, T)> {
         let whole = self.parameters_between(from, stop);
         // Far from the end, trying it would cost a walk over the whole chain for every move.
-        let tried_stop = whole <= NEAR_STOP * step.max(1.0);
+        let tried_stop = whole <= NEAR_STOP * step.larger(1.0);
         if tried_stop && let Some(made) = attempt(stop) {
             return Some((stop, made));
         }
         let mut bad = whole;
         let mut good = 0.0;
         let mut best = None;
-        let mut trial = step.min(0.5 * bad);
+        let mut trial = step.smaller(0.5 * bad);
         for _ in 0..80 {
             let to = self.advance(from, trial);
             if let Some(made) = attempt(to) {
@@ -360,7 +361,7 @@ fn is_corner(before: &Element, after: &Element) -> bool {
 }
 
 fn first_leg(points: &[[f64; 3]; 6]) -> [f64; 3] {
-    let size = points.iter().fold(0.0_f64, |size, p| size.max(distance(*p, points[0])));
+    let size = points.iter().fold(0.0_f64, |size, p| size.larger(distance(*p, points[0])));
     for p in points {
         if distance(*p, points[0]) > 1e-9 * size {
             return [p[0] - points[0][0], p[1] - points[0][1], p[2] - points[0][2]];

@@ -1,6 +1,7 @@
 //! The densities against their own differences, and against the formulas in their plainest form.
 
 use super::*;
+use crate::order::Order;
 use crate::root::sqrt;
 
 const PLAIN: Weights = Weights { variation: 0.0, bending: 0.0, length: 0.0 };
@@ -31,7 +32,7 @@ fn agrees<const D: usize>(value: &dyn Fn(&[[Lanes; D]; 3]) -> Lanes, derivatives
                 .flatten()
                 .flatten()
                 .flatten()
-                .fold(1.0f64, |m, x| m.max(x.0[lane].abs()));
+                .fold(1.0f64, |m, x| m.larger(x.0[lane].abs()));
             assert!((found.value.0[lane] - value(&d).0[lane]).abs() <= 1e-13 * scale);
             let h = 1e-6;
             for k in 0..3 {

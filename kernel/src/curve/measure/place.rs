@@ -7,6 +7,7 @@ use super::{
 use crate::basis::bernstein::Bernstein;
 use crate::basis::hermite;
 use crate::curve::element::Element;
+use crate::order::Order;
 use crate::root::sqrt;
 use nalgebra::Vector3;
 
@@ -46,7 +47,7 @@ pub fn at_length(elements: &[Element], s: f64) -> Result<CurvePoint, MeasureErro
         before += own;
     }
     let (place, rows, unit) = found.ok_or(MeasureError::NoElements)?;
-    let wanted = ((s - before) / unit).max(0.0);
+    let wanted = ((s - before) / unit).larger(0.0);
     // Newton's method on the arc length, kept between bounds that close in.
     let (mut low, mut high) = (0.0, 1.0);
     let mut t = (wanted / part_length(&rows, 1.0)).clamp(0.0, 1.0);
@@ -91,7 +92,7 @@ pub fn closest(elements: &[Element], point: [f64; 3]) -> Result<CurvePoint, Meas
         let mut outside = 0.0f64;
         for d in 0..3 {
             let (low, high) = Bernstein::new(bezier.map(|point| point[d])).range();
-            outside = outside.max(low - target[d]).max(target[d] - high);
+            outside = outside.larger(low - target[d]).larger(target[d] - high);
         }
         if outside * unit > best.0 {
             continue;

@@ -8,6 +8,7 @@ use crate::basis::bernstein::Bernstein;
 use crate::basis::hermite;
 use crate::curve::element::Element;
 use crate::curve::figures::Figures;
+use crate::order::Order;
 use nalgebra::Vector3;
 
 /// The length of a chain: 32-point Gauss–Lobatto an element, which is exact to rounding for elements without near
@@ -114,8 +115,8 @@ pub fn bounding_box(elements: &[Element]) -> Result<[[f64; 3]; 2], MeasureError>
     check(elements)?;
     let mut corners = [elements.first().ok_or(MeasureError::NoElements)?.rows[0]; 2];
     let mut take = |d: usize, x: f64| {
-        corners[0][d] = corners[0][d].min(x);
-        corners[1][d] = corners[1][d].max(x);
+        corners[0][d] = corners[0][d].smaller(x);
+        corners[1][d] = corners[1][d].larger(x);
     };
     for element in elements {
         let (rows, _) = normalised(element);

@@ -5,6 +5,7 @@ use super::span::{COLUMNS, Condensed, Span, Weigh, condense};
 use crate::curve::end::End;
 use crate::curve::fairness::{Density, Shape};
 use crate::curve::model::Model;
+use crate::order::Order;
 use crate::root::sqrt;
 use crate::solve::{Allow, Envelope, Indices, dot};
 use crate::total::Total;
@@ -152,7 +153,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
             let half = 0.5 * (phi[1] - phi[0]);
             let stretched = if half.abs() > 1e-3 { half / libm::sin(half) } else { 1.0 };
             let mut own = [0.0; N];
-            own[0] = if stretched > 0.0 { stretched.min(4.0) } else { 4.0 };
+            own[0] = if stretched > 0.0 { stretched.smaller(4.0) } else { 4.0 };
             let mut span = Span {
                 chord: sqrt(chord.dot(&chord)),
                 shared: [phi[0], ends[0].curvature[0], phi[1], ends[1].curvature[0]],
@@ -215,7 +216,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
         for memory in spans.chunks_exact(stride(N)) {
             let (places, _) = memory.cut(4);
             let free = || places.iter().filter(|&&place| place >= 0.0);
-            let low = free().fold(f64::INFINITY, |low, &place| low.min(place));
+            let low = free().fold(f64::INFINITY, |low, &place| low.smaller(place));
             for &place in free() {
                 let row = place as usize;
                 row_first.set(row, row_first.get(row).min(low as usize));
@@ -306,7 +307,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
             for (to, row) in follow.chunks_exact_mut(COLUMNS).zip(&found) {
                 to.copy(row);
             }
-            gap = gap.max(own_gap);
+            gap = gap.larger(own_gap);
             self.left_out += left_out;
             for k in 0..3 {
                 self.sums[k] += sums[k];
@@ -383,14 +384,14 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
             let (mut largest, mut turn) = (gap, 0.0f64);
             for memory in self.spans.chunks_exact(stride(N)) {
                 let [t0, k0, t1, k1] = own_step(memory, self.step);
-                turn = turn.max(t0.abs()).max(t1.abs());
-                largest = largest.max(k0.abs().max(k1.abs()) * memory[4]);
+                turn = turn.larger(t0.abs()).larger(t1.abs());
+                largest = largest.larger(k0.abs().larger(k1.abs()) * memory[4]);
             }
-            largest = largest.max(turn);
+            largest = largest.larger(turn);
             if !largest.is_finite() {
                 return Ended::Failed;
             }
-            let by = (LONGEST_STEP / turn).min(LONGEST_BEND / largest).min(1.0);
+            let by = (LONGEST_STEP / turn).smaller(LONGEST_BEND / largest).smaller(1.0);
             weigh.length += by * change;
             let mut length = 0.0;
             for memory in self.spans.chunks_exact_mut(stride(N)) {
@@ -399,7 +400,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
                 let mut span = Span::<N>::load(values);
                 let before = span.own[0];
                 span.advance(&step, change, follow, by);
-                span.own[0] = span.own[0].max(0.5 * before).min(2.0 * before);
+                span.own[0] = span.own[0].larger(0.5 * before).smaller(2.0 * before);
                 length += span.length();
                 span.store(values);
             }
@@ -444,7 +445,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
             Law::Plain => 0.0,
             Law::Length(target) => {
                 // Not more than a tenth at a time.
-                let next = target.max(0.9 * length).min(1.1 * length);
+                let next = target.larger(0.9 * length).smaller(1.1 * length);
                 (next - length - change[0]) / change[1]
             }
             Law::Power(power) => {
@@ -459,7 +460,7 @@ impl<'w, const N: usize, const C: usize> Chain<'w, N, C> {
                 let (plain, pulled) = (with(self.step, change[0]), with(self.pulled, change[1]));
                 // The denominator is positive where the whole is positive definite. Under a tension that stands a step
                 // always goes down, for the logarithm is concave: a tension that moves hastens it, and only so much.
-                (power * value / length - weigh.length + plain) / (1.0 - pulled).max(LEAST_HOLD)
+                (power * value / length - weigh.length + plain) / (1.0 - pulled).larger(LEAST_HOLD)
             }
         };
         if found.is_finite() { found } else { 0.0 }

@@ -12,6 +12,7 @@ use crate::basis::lanes::{Lanes, WIDTH};
 use crate::basis::quadrature::legendre;
 use crate::curve::end::End;
 use crate::curve::fairness::{curvature_with_derivatives, slope_with_derivatives};
+use crate::order::Order;
 use crate::root::sqrt;
 
 /// Points of the rule by which curves are compared.
@@ -145,7 +146,7 @@ pub(super) fn fit<const D: usize, const N: usize>(
     warm: bool,
     enough: f64,
 ) -> f64 {
-    let enough = enough.max(NOTHING);
+    let enough = enough.larger(NOTHING);
     let shape = Shape {
         chord: core::array::from_fn(|x| ends[1].point[x] - ends[0].point[x]),
         tangents: [0, 1].map(|end: usize| [ends[end].frame[0][0], ends[end].frame[0][1]]),
@@ -374,7 +375,7 @@ impl Compared {
             }
             step[i] /= factor[i][i];
         }
-        let far = (step[0] / now[0]).abs().max((step[2] / now[2]).abs());
+        let far = (step[0] / now[0]).abs().larger((step[2] / now[2]).abs());
         if !far.is_finite() {
             return None;
         }

@@ -2,6 +2,7 @@
 
 use super::functions::{BEYOND, Tables, rough_sine_cosine, sine_cosine};
 use crate::basis::lanes::Lanes;
+use crate::order::Order;
 use crate::root::sqrt;
 use crate::total::Total;
 
@@ -121,7 +122,7 @@ impl<const N: usize> Span<N> {
     /// `∫ θ'² du`, the square of the turning where that is even.
     pub(super) fn turning<const C: usize>(&self, tables: &Tables<N, C>) -> f64 {
         let q = self.coefficients();
-        sqrt(inner(&q, &product(&tables.slope, &q)).max(0.0))
+        sqrt(inner(&q, &product(&tables.slope, &q)).larger(0.0))
     }
 
     /// Its weighed integrals.

@@ -15,6 +15,7 @@ use crate::curve::end::End;
 use crate::curve::fairness::{Density, Shape};
 use crate::curve::model::Model;
 use crate::curve::start::give_speeds;
+use crate::order::Order;
 use crate::root::sqrt;
 
 /// To rounding.
@@ -170,7 +171,7 @@ impl TrueCurve<'_> {
                     let next = (part as f64 + t) / count;
                     point += turned(&along, way(&q, at, next)) * length;
                     at = next;
-                    most = most.max(distance(&point, &rows, t));
+                    most = most.larger(distance(&point, &rows, t));
                 }
             }
             *error = most + Self::truncation(&span);
