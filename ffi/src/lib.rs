@@ -46,7 +46,11 @@ pub extern "C" fn minvar_abi_check(abi: u32) -> i32 {
 #[cfg(not(test))]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
-    #[cfg(not(target_os = "none"))]
+    #[cfg(target_family = "wasm")]
+    core::arch::wasm32::unreachable();
+    #[cfg(all(not(target_family = "wasm"), any(target_os = "none", target_os = "unknown")))]
+    loop {}
+    #[cfg(not(any(target_family = "wasm", target_os = "none", target_os = "unknown")))]
     {
         unsafe extern "C" {
             fn abort() -> !;
@@ -54,6 +58,4 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
         // SAFETY: C's abort takes nothing and does not return.
         unsafe { abort() }
     }
-    #[cfg(target_os = "none")]
-    loop {}
 }
