@@ -128,6 +128,9 @@ typedef enum minvar_code {
     MINVAR_COORDINATE_TOO_LARGE = 75,
     // The caller's writer or visitor asked to stop: what it got is incomplete. Other results are untouched.
     MINVAR_STOPPED = 76,
+    // No code: it keeps the enum at 32 bits where compilers would make it as short as its numbers (Arm's convention for
+    // programs without an operating system, `-fshort-enums`).
+    MINVAR_CODE_HAS_32_BITS = 2147483647,
 } minvar_code;
 
 // How a computation ended. A status is not an error: figures were computed, and the status says what they are worth.
@@ -146,6 +149,8 @@ typedef enum minvar_status {
     MINVAR_UNBOUNDED = 4,
     // The observer asked to stop.
     MINVAR_CANCELLED = 5,
+    // No status: it keeps the enum at 32 bits, as MINVAR_CODE_HAS_32_BITS does.
+    MINVAR_STATUS_HAS_32_BITS = 2147483647,
 } minvar_status;
 
 // Whether a quantity is the solver's to choose.

@@ -99,6 +99,9 @@ pub enum minvar_code {
     MINVAR_COORDINATE_TOO_LARGE = 75,
     /// The caller's writer or visitor asked to stop: what it got is incomplete. Other results are untouched.
     MINVAR_STOPPED = 76,
+    /// No code: it keeps the enum at 32 bits where compilers would make it as short as its numbers (Arm's convention for
+    /// programs without an operating system, `-fshort-enums`).
+    MINVAR_CODE_HAS_32_BITS = 0x7fff_ffff,
 }
 
 use minvar_code::*;
@@ -137,6 +140,8 @@ pub enum minvar_status {
     MINVAR_UNBOUNDED = 4,
     /// The observer asked to stop.
     MINVAR_CANCELLED = 5,
+    /// No status: it keeps the enum at 32 bits, as MINVAR_CODE_HAS_32_BITS does.
+    MINVAR_STATUS_HAS_32_BITS = 0x7fff_ffff,
 }
 
 impl From<Status> for minvar_status {

@@ -14,6 +14,8 @@ mod convert;
 mod curve;
 mod layout;
 mod measure;
+#[cfg(not(test))]
+mod panic;
 mod raw;
 mod region;
 mod toolpath;
@@ -41,31 +43,6 @@ pub extern "C" fn minvar_version() -> *const c_char {
 #[unsafe(no_mangle)]
 pub extern "C" fn minvar_abi_check(abi: u32) -> i32 {
     i32::from(abi == MINVAR_ABI)
-}
-
-// No function of the library can come here, which is proven where it is linked with a handler that does not exist
-// (scripts/no_panic.sh). A library without a handler is none, though.
-#[cfg(not(test))]
-#[panic_handler]
-fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
-    #[cfg(minvar_proof)]
-    {
-        unsafe extern "C" {
-            fn minvar_can_panic() -> !;
-        }
-        // SAFETY: a program in which this is reachable cannot be linked.
-        unsafe { minvar_can_panic() }
-    }
-    #[cfg(all(not(minvar_proof), not(target_os = "none")))]
-    {
-        unsafe extern "C" {
-            fn abort() -> !;
-        }
-        // SAFETY: C's abort takes nothing and does not return.
-        unsafe { abort() }
-    }
-    #[cfg(all(not(minvar_proof), target_os = "none"))]
-    loop {}
 }
 
 /// What the proof must find: a function that panics.

@@ -115,6 +115,13 @@ fn structs_are_laid_out_in_c_as_in_rust() {
     assert_eq!(checked, in_header, "the structs of minvar.h and those of ffi/src/layout.rs");
 }
 
+/// Arm's convention for programs without an operating system: an enum is as short as its numbers allow.
+#[test]
+fn structs_have_the_same_layout_where_enums_are_short() {
+    let layout = |flags| passes(&build(&["layout.c"], Link::Static, flags));
+    assert_eq!(layout(&["-fshort-enums"]), layout(&[]));
+}
+
 #[test]
 fn a_c_program_computes_the_coving() {
     passes_with_both(&["coving.c"], &[]);

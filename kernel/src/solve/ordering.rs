@@ -6,7 +6,9 @@
 use super::problem::{BlockList, Problem};
 use super::workspace::{Indices, Workspace};
 
-const UNSEEN: usize = 1 << 52;
+/// More than any level: seven arrays of so many indices are more than memory can hold. Less than all ones, which of 64 bits
+/// would be a NaN among the doubles that indices are kept in.
+const UNSEEN: usize = usize::MAX >> (usize::BITS / 8);
 
 /// Which elements touch a block, as lists one behind another.
 struct Graph<'a, 'w, P: ?Sized> {
