@@ -14,10 +14,12 @@
  *            comment lists the other errors. A pointer that is neither NULL nor valid cannot be detected: behaviour is
  *            undefined then, as in all of C, and so it is where an output overlaps anything else.
  * Memory     The library never allocates, keeps no pointer after it returned, and has no global state. Workspaces come
- *            from the caller, who asks for the length first; one may be used again, dirty, for anything. Nothing that
- *            it returns is to be freed.
+ *            from the caller, who asks for the length first; one may be used again, dirty, for anything, after an error
+ *            and after a callback stopped the work too. Nothing that it returns is to be freed.
  * Threads    Any number may call at once, each with its own memory; input may be shared. Callbacks come on the thread
- *            that called, before the call returns.
+ *            that called, before the call returns; one that asked to stop is not called again. The record or move that
+ *            one is shown is a copy, which dies when it returns: writing into it changes nothing. It must leave alone
+ *            the data, options and memory of the call that it belongs to.
  * Panics     None: in the library as it is released no path leads to one. A callback must return: it may neither throw
  *            through the library nor jump out of it.
  * Numbers    NaN, infinities and constants that are not defined come back as codes. The same input gives the same bits
@@ -378,8 +380,8 @@ typedef struct minvar_record {
 
 // Watches a solve: called on the solving thread after every iteration with the caller's context, the iteration's
 // number, from 1, and its record, which lives until the function returns. Return 0 to go on, anything else to stop with
-// MINVAR_CANCELLED and the best curve so far. It may call this library with other memory; it must return, not leave by
-// longjmp() or an exception.
+// MINVAR_CANCELLED and the best curve so far: a whole one, with a report that belongs to it. Who asked to stop is not
+// called again. It may call this library with other memory; it must return, not leave by longjmp() or an exception.
 typedef int32_t (*minvar_observer)(void *context, size_t iteration, const struct minvar_record *record);
 
 // How a curve came out. All figures in the caller's units; `value`, `fine_value` and `decrement` in the functional's.
@@ -687,7 +689,8 @@ enum minvar_code minvar_curve_update(const struct minvar_curve *curve,
 //
 // `reports` has room for `reports_len` reports and receives one a minimum, the lowest first. `elements` has room for
 // `(reports_len + 1)` times minvar_curve_elements_len() elements: the first so many receive the first minimum's, and so on;
-// the last are scratch. `count` receives the number of minima. `observer` sees every solve begin with iteration 1. The
+// the last are scratch. `count` receives the number of minima. `observer` sees every solve begin with iteration 1; if it
+// asks to stop, the minima that were found before are the result, none if there were none, and the code is MINVAR_OK. The
 // rest as in minvar_curve_solve().
 //
 // Errors: as minvar_curve_solve().

@@ -255,8 +255,8 @@ pub struct minvar_report {
 
 /// Watches a solve: called on the solving thread after every iteration with the caller's context, the iteration's
 /// number, from 1, and its record, which lives until the function returns. Return 0 to go on, anything else to stop with
-/// MINVAR_CANCELLED and the best curve so far. It may call this library with other memory; it must return, not leave by
-/// longjmp() or an exception.
+/// MINVAR_CANCELLED and the best curve so far: a whole one, with a report that belongs to it. Who asked to stop is not
+/// called again. It may call this library with other memory; it must return, not leave by longjmp() or an exception.
 pub type minvar_observer =
     Option<unsafe extern "C" fn(context: *mut c_void, iteration: usize, record: *const minvar_record) -> i32>;
 
@@ -492,9 +492,10 @@ struct Watch {
 impl Observer for Watch {
     fn iteration(&mut self, number: usize, record: &Record) -> Control {
         let Some(observer) = self.observer else { return Control::Continue };
-        let record: *const Record = record;
+        // A copy of its own: an observer that writes to it, const or not, changes nothing.
+        let mut record = *record;
         // SAFETY: the caller gave this function for this call; the layouts of the records are the same.
-        let answer = unsafe { observer(self.context, number, record.cast()) };
+        let answer = unsafe { observer(self.context, number, (&raw mut record).cast()) };
         if answer == 0 { Control::Continue } else { Control::Cancel }
     }
 }
@@ -613,7 +614,8 @@ pub unsafe extern "C" fn minvar_curve_update(
 ///
 /// `reports` has room for `reports_len` reports and receives one a minimum, the lowest first. `elements` has room for
 /// `(reports_len + 1)` times minvar_curve_elements_len() elements: the first so many receive the first minimum's, and so on;
-/// the last are scratch. `count` receives the number of minima. `observer` sees every solve begin with iteration 1. The
+/// the last are scratch. `count` receives the number of minima. `observer` sees every solve begin with iteration 1; if it
+/// asks to stop, the minima that were found before are the result, none if there were none, and the code is MINVAR_OK. The
 /// rest as in minvar_curve_solve().
 ///
 /// Errors: as minvar_curve_solve().

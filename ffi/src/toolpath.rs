@@ -128,9 +128,9 @@ pub unsafe extern "C" fn minvar_chords(
         answer::<PathError>(error, || {
             let visit = visit.ok_or(null("visit"))?;
             for chord in toolpath::chords(elements_of(elements, count)?, tolerance)? {
-                let found =
+                let mut found =
                     minvar_move { turn: 0, end: chord.end, centre: [0.0; 3], deviation: chord.deviation };
-                if visit(context, &found) != 0 {
+                if visit(context, &raw mut found) != 0 {
                     return Err(Failure::Stopped.into());
                 }
             }
@@ -166,13 +166,13 @@ pub unsafe extern "C" fn minvar_arcs(
                         (if clockwise { -1 } else { 1 }, end, Some(centre))
                     }
                 };
-                let found = minvar_move {
+                let mut found = minvar_move {
                     turn,
                     end: [end[0], end[1], z],
                     centre: centre.map_or([0.0; 3], |centre| [centre[0], centre[1], z]),
                     deviation: segment.deviation,
                 };
-                if visit(context, &found) != 0 {
+                if visit(context, &raw mut found) != 0 {
                     return Err(Failure::Stopped.into());
                 }
             }

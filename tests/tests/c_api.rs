@@ -143,6 +143,11 @@ fn callbacks_stop_the_work_and_dirty_memory_changes_nothing() {
 }
 
 #[test]
+fn after_a_fault_outputs_are_untouched_or_whole() {
+    passes_with_both(&["faults.c"], &[]);
+}
+
+#[test]
 fn threads_that_solve_at_once_get_the_same_bits() {
     passes_with_both(&["threads.c"], &[]);
 }
@@ -165,7 +170,7 @@ fn valgrind_finds_nothing_where_it_is_installed() {
         eprintln!("valgrind is not installed: not checked");
         return;
     }
-    for name in ["coving.c", "bad_input.c"] {
+    for name in ["coving.c", "bad_input.c", "faults.c"] {
         let mut command = Command::new("valgrind");
         command.args(["--quiet", "--error-exitcode=9", "--leak-check=full"]).arg(build(
             &[name],

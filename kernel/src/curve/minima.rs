@@ -15,7 +15,8 @@ use crate::total::Total;
 ///
 /// `reports` receives a report a minimum, the lowest first, as many as it has room for; `elements` holds
 /// `(reports.len() + 1) ·` [`elements_len`] elements, of which the first [`elements_len`] receive the first minimum's, and
-/// so on; the last are scratch. The observer sees every solve begin with iteration 1. Returns the number of minima.
+/// so on; the last are scratch. The observer sees every solve begin with iteration 1; if it asks to stop, the minima that
+/// were found before are the result. Returns the number of minima.
 ///
 /// # Errors
 /// As [`super::solve()`].

@@ -67,7 +67,7 @@ pub(super) struct Passes<'a> {
     length: Option<f64>,
     /// The tension that belongs to that length, as far as it is known.
     multiplier: f64,
-    /// Whether the observer asked to stop.
+    /// Whether the observer asked to stop: it is not asked again.
     cancelled: bool,
     hurries: bool,
     /// Whether elements run along a known curve.
@@ -103,12 +103,11 @@ impl<'a> Passes<'a> {
     /// Notes an iteration of the curve's directions: the functional, in the local unit, and how far it went. Returns
     /// whether to go on.
     fn note(&mut self, value: f64, step: f64) -> bool {
-        if self.iterations >= self.most {
+        if self.cancelled || self.iterations >= self.most {
             return false;
         }
-        let control = self.iteration(1, &Record { value, step, ..Record::ZERO });
+        self.iteration(1, &Record { value, step, ..Record::ZERO });
         self.iterations += 1;
-        self.cancelled = control == Control::Cancel;
         !self.cancelled && self.iterations < self.most
     }
 
@@ -519,6 +518,8 @@ impl Observer for Passes<'_> {
         if let Some(slot) = self.records.get_mut(number - 1) {
             *slot = record;
         }
-        self.observer.iteration(number, &record)
+        let control = self.observer.iteration(number, &record);
+        self.cancelled |= control == Control::Cancel;
+        control
     }
 }

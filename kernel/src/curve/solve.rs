@@ -67,10 +67,11 @@ fn look_over(curve: &Curve<'_>, options: &Options) -> Result<Place, CurveError> 
 
 /// Computes a curve (thesis chapter 4).
 ///
-/// `workspace` needs [`workspace_len`] numbers in any condition, `elements` receives [`elements_len`] elements in
-/// order along the curve, or fewer with a tolerance; more room is left untouched. `records` receives one record an
-/// iteration as far as it reaches. Fixed positions and tangent directions are kept exactly; planar data give elements
-/// exactly in their plane where that is parallel to a coordinate plane, else to rounding.
+/// `workspace` needs [`workspace_len`] numbers in any condition, also as a computation left it that was refused or
+/// cancelled. `elements` receives [`elements_len`] elements in order along the curve, or fewer with a tolerance; more
+/// room is left untouched. `records` receives one record an iteration as far as it reaches. Fixed positions and tangent
+/// directions are kept exactly; planar data give elements exactly in their plane where that is parallel to a coordinate
+/// plane, else to rounding.
 ///
 /// With a reference shape the search starts from that shape. A curve of which nothing is fixed, and whose functional
 /// does not look at size, stays about where its start values are.

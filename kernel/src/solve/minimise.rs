@@ -79,7 +79,8 @@ pub fn minimise<P: Problem + ?Sized>(
     records: &mut [Record],
     observer: &mut dyn Observer,
 ) -> Result<Outcome, WorkspaceTooSmall> {
-    let layout = Layout::of(problem, executor.width());
+    let width = executor.width().max(1);
+    let layout = Layout::of(problem, width);
     let given = workspace.len();
     let mut work = layout.carve(workspace)?;
     let entries = order_blocks(problem, &mut work);
@@ -89,7 +90,7 @@ pub fn minimise<P: Problem + ?Sized>(
     let coupled = Coupled::plain([f64::INFINITY; 2]);
     let loosens = settings.relaxation > 0 && layout.loosens;
     let relaxation = settings.relaxation;
-    let mut run = Run { problem, executor, work, relaxation, loosens, linearisations: 0, coupled };
+    let mut run = Run { problem, executor, width, work, relaxation, loosens, linearisations: 0, coupled };
     Ok(run.iterate(settings, state, records, observer))
 }
 
@@ -133,9 +134,18 @@ fn local_unknowns<P: Problem + ?Sized>(
     (list, local)
 }
 
+/// Marks slots as empty: those that an executor leaves out stay so, and their sum is no number.
+fn vacate(slots: &mut [f64], slot_len: usize) {
+    for slot in slots.chunks_exact_mut(slot_len.max(1)) {
+        slot.put(0, f64::NAN);
+    }
+}
+
 struct Run<'a, P: ?Sized> {
     problem: &'a P,
     executor: &'a dyn Executor,
+    /// How many slots there are.
+    width: usize,
     work: Workspace<'a>,
     relaxation: usize,
     /// Whether loose blocks are relaxed too.
@@ -200,6 +210,11 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         let mut explorations = if explores { MOST_EXPLORATIONS } else { 0 };
         let mut past = [f64::INFINITY; WINDOW];
         loop {
+            if !value.is_finite() {
+                // An executor left an element out.
+                outcome.status = Status::Stalled;
+                return outcome;
+            }
             let gradient = self.work.gradient.iter().fold(0.0f64, |most, g| most.larger(g.abs()));
             let floor = noise(value, natural);
             outcome = Outcome { value, gradient, linearisations: self.linearisations, ..outcome };
@@ -315,7 +330,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
                 state.copy(self.work.trial);
                 self.coupled = tried;
                 value = self.linearise(state);
-                outcome.value = value;
+                outcome.value = if value.is_finite() { value } else { tried.value };
             }
             if control == Control::Cancel {
                 outcome.status = Status::Cancelled;
@@ -386,8 +401,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
 
     /// The objective at the trial state; infinite outside the domain.
     fn cost(&mut self) -> Coupled {
-        let (problem, elements, width) =
-            (self.problem, self.problem.elements(), self.executor.width().max(1));
+        let (problem, elements, width) = (self.problem, self.problem.elements(), self.width);
         let Workspace { trial, slots, .. } = &mut self.work;
         let trial = &**trial;
         let mut sums = [0.0; 2];
@@ -395,8 +409,11 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         while at < elements {
             let count = width.min(elements - at);
             let slots = slots.part_mut(..2 * count);
+            vacate(slots, 2);
             self.executor.run(slots, 2, &|index, slot| {
-                slot.copy(&problem.sums(at + index, trial));
+                if index < count && slot.len() == 2 {
+                    slot.copy(&problem.sums(at + index, trial));
+                }
             });
             for &[own, second] in slots.as_chunks().0 {
                 if !(own.is_finite() && second.is_finite()) {
@@ -412,8 +429,7 @@ impl<P: Problem + ?Sized> Run<'_, P> {
 
     /// Assembles gradient and Hessian at a state, scaled by natural sizes; returns the cost.
     fn linearise(&mut self, state: &[f64]) -> f64 {
-        let (problem, elements, width) =
-            (self.problem, self.problem.elements(), self.executor.width().max(1));
+        let (problem, elements, width) = (self.problem, self.problem.elements(), self.width);
         let Workspace {
             row_first,
             row_start,
@@ -445,7 +461,11 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         while at < elements {
             let count = width.min(elements - at);
             let slots = slots.part_mut(..count * *slot_len);
+            vacate(slots, *slot_len);
             self.executor.run(slots, *slot_len, &|index, slot| {
+                if index >= count || slot.len() != *slot_len {
+                    return;
+                }
                 let (_, local) = local_unknowns(problem, dofs, at + index);
                 slot.fill(0.0);
                 let (own, rest) = slot.cut_mut(2);

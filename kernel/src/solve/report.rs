@@ -92,7 +92,8 @@ pub enum Control {
 
 /// Watches a solve.
 pub trait Observer {
-    /// Called after every iteration with its number, from 1, and its record.
+    /// Called after every iteration with its number, from 1, and its record. Not called again in a computation that it
+    /// asked to stop, whose result is then the best so far, as a whole. Elements are written after the last call.
     fn iteration(&mut self, number: usize, record: &Record) -> Control;
 }
 

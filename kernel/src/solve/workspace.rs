@@ -79,7 +79,7 @@ impl Layout {
             state,      // trial state
             state,      // scratch state
             state,      // best state of several
-            slot * slots,
+            slot.saturating_mul(slots),
             packed_len(local) * 2 + 6 * local,
             coupled, // gradient of the first sum
             coupled, // gradient of the second sum
@@ -89,7 +89,7 @@ impl Layout {
     }
 
     pub(super) fn len(&self) -> usize {
-        self.parts().iter().sum()
+        self.parts().iter().fold(0, |sum, part| sum.saturating_add(*part))
     }
 
     pub(super) fn carve<'a>(&self, memory: &'a mut [f64]) -> Result<Workspace<'a>, WorkspaceTooSmall> {
@@ -217,7 +217,7 @@ impl<'a> Indices<'a> {
 }
 
 /// The length of the workspace, in `f64`s, that [`super::minimise`] needs for a problem with an executor of the
-/// given width (1 for [`super::InOrder`]).
+/// given width (1 for [`super::InOrder`]); `usize::MAX` where no memory is long enough.
 pub fn workspace_len<P: Problem + ?Sized>(problem: &P, width: usize) -> usize {
     Layout::of(problem, width).len()
 }
