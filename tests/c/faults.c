@@ -1,6 +1,6 @@
-/* Faults of the caller: memory one entry short or misaligned, exactly as long as asked for between pages that nobody may
- * touch, dirty, used again; an observer that stops at any iteration, wavers, answers garbage or writes into its record. After
- * each the outputs are untouched or whole, and the next call in the same memory gives the same bits. */
+/* Faults of the caller: memory one entry short or misaligned, exactly as long as asked for between pages that nobody
+ * may touch, dirty, used again; an observer that stops at any iteration, wavers, answers garbage or writes into its
+ * record. After each the outputs are untouched or whole, and the next call in the same memory gives the same bits. */
 #ifndef _DEFAULT_SOURCE
 #define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
 #endif
@@ -351,9 +351,11 @@ static kind through(const char *name, const double (*points)[3], size_t count) {
 static const double WOODFORD[7][3] = {{0, 0, 0}, {1, 1.9, 0}, {2, 2.7, 0}, {3, 2.6, 0},
                                       {4, 1.6, 0}, {5, 0.89, 0}, {6, 1.2, 0}};
 static const double SPACE[5][3] = {{0, 0, 0}, {1, 1, 0.3}, {2, 0.2, 1}, {3, 1, 1.2}, {3.5, 2, 2}};
-static const double HELIX[5][3] = {{1, 0, 0}, {0.76, 0.64, 0.2}, {0.17, 0.98, 0.42}, {-0.5, 0.86, 0.6}, {-0.94, 0.33, 0.84}};
+static const double HELIX[5][3] = {{1, 0, 0}, {0.76, 0.64, 0.2}, {0.17, 0.98, 0.42}, {-0.5, 0.86, 0.6},
+                                   {-0.94, 0.33, 0.84}};
 static const double LOOP[5][3] = {{-1.5, 0, 0}, {-0.5, 0.5, 0}, {0, 1, 0}, {0.5, 0.5, 0}, {1.5, 0, 0}};
-static const double RING[6][3] = {{2, 0, 0}, {1.3, 1.1, 0}, {-0.9, 0.8, 0}, {-2.2, 0, 0}, {-1.4, -1.2, 0}, {1, -0.9, 0}};
+static const double RING[6][3] = {{2, 0, 0}, {1.3, 1.1, 0}, {-0.9, 0.8, 0}, {-2.2, 0, 0}, {-1.4, -1.2, 0},
+                                  {1, -0.9, 0}};
 
 int main(void) {
     kind k = through("seven points", WOODFORD, 7);

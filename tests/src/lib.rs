@@ -7,6 +7,7 @@ pub mod ceres;
 pub mod compare;
 pub mod curves;
 pub mod figures;
+pub mod interface;
 pub mod iterations;
 pub mod kinds;
 pub mod paths;

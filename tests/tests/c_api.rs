@@ -4,9 +4,9 @@
 //! The programs are in `tests/c/`; each prints what it found wrong and exits with 1. `CC` and `CXX` choose other
 //! compilers than `cc` and `c++`.
 
-use minvar_tests::toolchain::{WARNINGS, compile, compiler, library, must, root, run, scratch};
+use minvar_tests::interface::{declared, header, symbols};
+use minvar_tests::toolchain::{WARNINGS, compile, compiler, library, must, root, scratch};
 use std::collections::BTreeSet;
-use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -181,10 +181,6 @@ fn valgrind_finds_nothing_where_it_is_installed() {
     }
 }
 
-fn header() -> String {
-    fs::read_to_string(root().join("include/minvar.h")).expect("include/minvar.h")
-}
-
 #[test]
 fn every_enum_that_a_comment_names_is_declared() {
     let header = header();
@@ -197,28 +193,6 @@ fn every_enum_that_a_comment_names_is_declared() {
     for name in names {
         assert!(header.contains(&format!("typedef enum {name} {{")), "{name} is not in minvar.h");
     }
-}
-
-/// The functions that the header declares.
-fn declared() -> BTreeSet<String> {
-    let name = |line: &str| {
-        let (before, _) = line.split_once('(')?;
-        let name = before.rsplit([' ', '*']).next()?;
-        (!line.starts_with([' ', '/', '#']) && !line.starts_with("typedef") && name.starts_with("minvar_"))
-            .then(|| name.to_owned())
-    };
-    header().lines().filter_map(name).collect()
-}
-
-/// The symbols that `nm` lists, by name, versions cut off.
-fn symbols(file: impl AsRef<OsStr>, flags: &[&str]) -> BTreeSet<String> {
-    let printed =
-        run(Command::new("nm").args(flags).arg("--format=posix").arg(file), "nm (Debian: binutils)");
-    assert!(printed.status.success(), "nm failed: {}", String::from_utf8_lossy(&printed.stderr));
-    let name = |line: &str| Some(line.split_once(' ')?.0.split('@').next()?.to_owned());
-    // Weak ones (the C library's start-up hooks) bind to nothing if nobody has them.
-    let strong = |line: &&str| line.split(' ').nth(1) != Some("w");
-    String::from_utf8_lossy(&printed.stdout).lines().filter(strong).filter_map(name).collect()
 }
 
 /// What the library takes from outside: memory blocks copied, and `abort`, which nothing calls.
