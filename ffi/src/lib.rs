@@ -43,7 +43,11 @@ pub extern "C" fn minvar_abi_check(abi: u32) -> i32 {
     i32::from(abi == MINVAR_ABI)
 }
 
-#[cfg(not(test))]
+// As a crate of a Rust program, which tests need, this has that program's panic handler.
+#[cfg(feature = "std")]
+extern crate std;
+
+#[cfg(not(any(test, feature = "std")))]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     #[cfg(not(target_os = "none"))]
