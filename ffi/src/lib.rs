@@ -14,7 +14,7 @@ mod convert;
 mod curve;
 mod layout;
 mod measure;
-#[cfg(not(test))]
+#[cfg(not(any(test, feature = "std")))]
 mod panic;
 mod raw;
 mod region;
@@ -44,6 +44,10 @@ pub extern "C" fn minvar_version() -> *const c_char {
 pub extern "C" fn minvar_abi_check(abi: u32) -> i32 {
     i32::from(abi == MINVAR_ABI)
 }
+
+// As a crate of a Rust program, which tests need, this has that program's panic handler.
+#[cfg(feature = "std")]
+extern crate std;
 
 /// What the proof must find: a function that panics.
 ///
