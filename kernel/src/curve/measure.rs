@@ -21,6 +21,7 @@ use crate::basis::hermite;
 use crate::basis::quadrature::FINEST;
 use crate::order::Order;
 use crate::root::sqrt;
+use crate::total::Total;
 use core::fmt;
 use nalgebra::Vector3;
 
@@ -166,7 +167,7 @@ pub fn plane_normal(elements: &[Element]) -> Option<[f64; 3]> {
     };
     for (across, normal) in [(2, [0.0, 0.0, 1.0]), (0, [1.0, 0.0, 0.0]), (1, [0.0, 1.0, 0.0])] {
         let mut flat = true;
-        each(&mut |vector| flat &= vector[across] == 0.0);
+        each(&mut |vector| flat &= vector.as_slice().at(across) == 0.0);
         if flat {
             return Some(normal);
         }
@@ -191,9 +192,8 @@ pub fn plane_normal(elements: &[Element]) -> Option<[f64; 3]> {
     });
     if !(off.amax() > PLANAR) {
         let least = (0..3).fold(0, |least, d| if along[d].abs() < along[least].abs() { d } else { least });
-        off = Vector3::zeros();
-        off[least] = 1.0;
-        off -= along * along[least];
+        off = Vector3::from_fn(|d, _| if d == least { 1.0 } else { 0.0 });
+        off -= along * along.as_slice().at(least);
     }
     let normal = along.cross(&off);
     let mut normal = normal / sqrt(normal.dot(&normal));

@@ -209,8 +209,7 @@ fn plane_axes(curve: &Curve<'_>, origin: &Vector3<f64>) -> Option<[Vector3<f64>;
     if width <= FLATNESS {
         // All on one line: any plane that holds it serves.
         let least = (0..3).fold(0, |least, d| if first[d].abs() < first[least].abs() { d } else { least });
-        let mut unit = Vector3::zeros();
-        unit[least] = 1.0;
+        let unit = Vector3::from_fn(|d, _| if d == least { 1.0 } else { 0.0 });
         second = unit - first * first.dot(&unit);
     }
     let second = second / sqrt(second.dot(&second));
