@@ -1,5 +1,5 @@
-//! Faults of those who call: a workspace that is short or dirty, an observer that stops at any moment or does not keep to
-//! its word. What comes out then is what the documentation says, and the next call is none the worse.
+//! Faults of those who call: a workspace that is short or dirty, an observer that stops at any moment or does not keep
+//! to its word. What comes out then is what the documentation says, and the next call is none the worse.
 
 use minvar::curve::{CurveError, Element, Given, Report, elements_len, measure, minima};
 use minvar::solve::{Control, Observer, Record, Silent, Status};
@@ -163,7 +163,7 @@ fn a_solve_cancelled_at_any_iteration_stops_there_and_hands_over_a_whole_curve()
         assert_eq!(whole.report.iterations, all.calls, "{}", kind.name);
         let mut workspace = vec![f64::NAN; kind.workspace_len()];
         // Of the longest every seventh, and the last ones.
-        let few = |stop_at: &usize| *stop_at < 40 || stop_at % 7 == 0 || all.calls - stop_at < 10;
+        let few = |stop_at: &usize| *stop_at < 40 || stop_at.is_multiple_of(7) || all.calls - stop_at < 10;
         for stop_at in (1..=all.calls).filter(few) {
             let mut wavering = Wavering { stop_at, ..Wavering::default() };
             let written = compute(&kind, &mut workspace, &mut wavering);
