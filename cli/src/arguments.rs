@@ -64,11 +64,19 @@ Examples:
   minvar curve moved.mvc --reference coving.json --reference-weight 0.8
   minvar curve - --csv samples.csv --samples 101 < coving.mvc
 
+Outputs:
+  A file is complete or as it was, whatever happens: it is written beside its place and put there by renaming, with the
+  permissions of the file that it replaces. If one output cannot be written, no file is changed. A link stays; what it
+  points to is replaced. Pipes and devices get theirs before the files change; what they have taken they keep.
+  A call that is killed changes some files or none, each as a whole, and may leave .minvar-*.part behind, which the next
+  call that writes there clears away.
+
 Exit codes:
   0  the curve was computed and all was written
   1  the curve did not converge; figures and files are those of the last shape, but no NC path is written
   2  the input or the command line is wrong
-  3  an output could not be written";
+  3  an output could not be written; no file was changed, unless the message says so
+  Ctrl-C ends the command by its signal, which a shell shows as 130.";
 
 /// `minvar curve`
 #[derive(Debug, Args)]

@@ -1,7 +1,7 @@
 //! The command `minvar`: files in; figures, pictures, tables and NC paths out.
 //!
 //! `arguments` says what it takes, `constraints` reads the input, `solve` calls the kernel, and `picture`, `tables` and `nc` make
-//! what `output` writes. Nothing is written before everything is made.
+//! what `output` writes. Nothing is written before everything is made, and then all or nothing.
 
 mod arguments;
 mod constraints;
@@ -17,7 +17,7 @@ use clap::Parser;
 use constraints::{Fault, Reading, Specification};
 use minvar::curve::TRUSTED;
 use minvar::solve::Status;
-use output::Target;
+use output::{Outputs, Target};
 use picture::{Mark, Picture, figure};
 use solve::{Options, Solution};
 use std::fmt::Write as _;
@@ -77,21 +77,18 @@ fn curve(arguments: &CurveArguments) -> Result<Status, Failure> {
     let chosen = chosen(arguments.minimum, &solutions)?;
     let solution = &solutions[chosen];
 
-    let (prepared, mut figures) = outputs(arguments, &targets, &specification, &options, solution)?;
+    let (mut outputs, mut figures) = outputs(arguments, &targets, &specification, &options, solution)?;
     if options.minima > 0 && solution.status == Status::Converged {
         figures += &table(&solutions, chosen);
     }
-    for output in prepared {
-        output.commit().map_err(|message| Failure::Output(format!("error: {message}")))?;
-    }
-    if !arguments.quiet {
-        // A file on the standard output must not be mixed with figures.
-        if targets.iter().any(|(_, target)| *target == Target::Stdout) {
-            complain(figures.trim_end());
-        } else {
-            output::print(figures.as_bytes())
-                .map_err(|message| Failure::Output(format!("error: {message}")))?;
-        }
+    // A file on the standard output must not be mixed with figures.
+    let apart = targets.iter().any(|(_, target)| *target == Target::Stdout);
+    let figures = Some(figures).filter(|_| !arguments.quiet);
+    let (beside, figures) = if apart { (figures, None) } else { (None, figures) };
+    figures.into_iter().for_each(|figures| outputs.print(figures));
+    outputs.commit().map_err(|message| Failure::Output(format!("error: {message}")))?;
+    if let Some(figures) = beside {
+        complain(figures.trim_end());
     }
     if solution.status != Status::Converged {
         complain(&format!("warning: {}", advice(&options, solution)));
@@ -125,16 +122,19 @@ fn chosen(number: usize, solutions: &[Solution]) -> Result<usize, Failure> {
     Err(Failure::Input(format!("error: --minimum {number}: {found}")))
 }
 
-/// No two outputs in one place, and none in an input's.
+/// No two outputs in one place, and none in an input's: neither would be what it is to be.
 fn check_targets(arguments: &CurveArguments, targets: &[(&'static str, Target)]) -> Result<(), Failure> {
     let inputs = [("FILE", Some(&arguments.file)), ("--reference", arguments.shape.reference.as_ref())];
     let inputs: Vec<_> = inputs.into_iter().filter_map(|(name, path)| Some((name, path?))).collect();
     if inputs.len() == 2 && inputs.iter().all(|(_, path)| is_stdin(path)) {
         return Err(Failure::Input("error: FILE and --reference are both the standard input".into()));
     }
-    let files = inputs.into_iter().filter(|(_, path)| !is_stdin(path));
-    let all: Vec<_> =
-        files.map(|(name, path)| (name, Target::new(path))).chain(targets.iter().cloned()).collect();
+    let place = |path: &Path| if is_stdin(path) { output::standard_input() } else { Some(Target::new(path)) };
+    let mut all: Vec<_> = inputs.into_iter().filter_map(|(name, path)| Some((name, place(path)?))).collect();
+    all.extend(targets.iter().cloned());
+    // Where the standard output runs into a file, an output in its place would be lost.
+    let prints = !arguments.quiet || targets.iter().any(|(_, target)| *target == Target::Stdout);
+    all.extend(output::standard_output().filter(|_| prints).map(|file| ("the standard output", file)));
     match output::same_twice(&all) {
         Some((a, b)) => Err(Failure::Input(format!("error: {a} and {b} are the same file"))),
         None => Ok(()),
@@ -249,9 +249,9 @@ fn outputs(
     specification: &Specification,
     options: &Options,
     solution: &Solution,
-) -> Result<(Vec<output::Prepared>, String), Failure> {
+) -> Result<(Outputs, String), Failure> {
     let mut figures = figures(specification, options, solution);
-    let mut prepared = Vec::new();
+    let mut outputs = Outputs::default();
     for (option, target) in targets {
         let content = match *option {
             "--svg" => svg(arguments, specification, options, solution),
@@ -276,10 +276,11 @@ fn outputs(
                 text
             }
         };
-        let output = output::prepare(target, content.into_bytes());
-        prepared.push(output.map_err(|message| Failure::Output(format!("error: {message}")))?);
+        outputs
+            .add(target, content.into_bytes())
+            .map_err(|message| Failure::Output(format!("error: {message}")))?;
     }
-    Ok((prepared, figures))
+    Ok((outputs, figures))
 }
 
 /// The figures as text, a line each.

@@ -63,8 +63,8 @@ impl Kind {
         workspace_len(&self.curve(), &self.options).expect("good data")
     }
 
-    /// Room for its elements, and three more that nobody may touch, full of [`MARKER`]; the last solution where it starts
-    /// from one.
+    /// Room for its elements, and three more that nobody may touch, full of [`MARKER`]; the last solution where it
+    /// starts from one.
     pub fn room(&self) -> Vec<Element> {
         let mut room = vec![MARKER; elements_len(&self.curve(), &self.options) + 3];
         room[..self.last.len()].copy_from_slice(&self.last);

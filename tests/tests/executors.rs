@@ -1,5 +1,5 @@
-//! Executors that do not do what they are asked to: whatever they do, the solver ends, and does not panic. What keeps to the
-//! words of [`Executor`] changes no bit, what leaves elements out is noticed.
+//! Executors that do not do what they are asked to: whatever they do, the solver ends, and does not panic. What keeps
+//! to the words of [`Executor`] changes no bit, what leaves elements out is noticed.
 
 use minvar::solve::{
     Executor, InOrder, Outcome, Record, Settings, Silent, Status, Task, WorkspaceTooSmall, minimise,

@@ -1,5 +1,5 @@
-//! Faults of those who call: a workspace that is short or dirty, an observer that stops at any moment or does not keep to
-//! its word. What comes out then is what the documentation says, and the next call is none the worse.
+//! Faults of those who call: a workspace that is short or dirty, an observer that stops at any moment or does not keep
+//! to its word. What comes out then is what the documentation says, and the next call is none the worse.
 
 use minvar::curve::{CurveError, Element, Given, Report, elements_len, measure, minima};
 use minvar::solve::{Control, Observer, Record, Silent, Status};

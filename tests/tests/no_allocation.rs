@@ -1,5 +1,5 @@
-//! The kernel allocates nothing: an allocator counts while every public function works, and the functions that were counted
-//! are compared with those that `kernel/src` makes public. A program of its own, for the sake of the allocator.
+//! The kernel allocates nothing: an allocator counts while every public function works, and the functions that were
+//! counted are compared with those that `kernel/src` makes public. A program of its own, for the sake of the allocator.
 
 use minvar::basis::bernstein::{Bernstein, RootsError};
 use minvar::curve::{
@@ -80,7 +80,8 @@ impl Count {
         self.names.insert(name);
     }
 
-    /// `curve::Joint::at` is `curve Joint::at`; the modules of a layer do not matter: `curve::measure::at` is `curve at`.
+    /// `curve::Joint::at` is `curve Joint::at`; the modules of a layer do not matter: `curve::measure::at` is `curve
+    /// at`.
     fn function(&mut self, path: &str, calls: usize) {
         let parts: Vec<_> = path.split("::").map(str::trim).collect();
         let [layer, .., last] = parts[..] else { panic!("{path}") };

@@ -1,5 +1,5 @@
-//! No heap: nothing that the library is made of links `alloc` or `std`, nothing that is linked knows a heap, and no function
-//! of the C interface calls one. `no_allocation.rs` counts the kernel's.
+//! No heap: nothing that the library is made of links `alloc` or `std`, nothing that is linked knows a heap, and no
+//! function of the C interface calls one. `no_allocation.rs` counts the kernel's.
 
 use minvar_tests::interface::{declared, symbols};
 use minvar_tests::toolchain::{compile, compiler, library, must, root, run, scratch};
@@ -46,8 +46,8 @@ const ALLOCATES: &str = "extern crate alloc;\n\
         let mut v = alloc::vec::Vec::new(); for i in 0..n { v.push(i) } v.iter().sum()\n\
     }\n";
 
-/// That libminvar can be built at all is a proof: the compiler refuses one like it as soon as any crate in it, at whatever
-/// depth, links `alloc` without an allocator, or `std`, which has a panic handler already.
+/// That libminvar can be built at all is a proof: the compiler refuses one like it as soon as any crate in it, at
+/// whatever depth, links `alloc` without an allocator, or `std`, which has a panic handler already.
 #[test]
 fn the_compiler_refuses_a_library_like_ours_that_links_alloc_or_std() {
     assert!(static_library("plain", LIKE_OURS).is_ok(), "it takes one that links neither");
