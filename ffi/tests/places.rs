@@ -1,7 +1,6 @@
 //! Places of a chain and its other forms, in memory that fits exactly: the kernel's bits.
 
 use crate::memory::{Room, works};
-use crate::solving::{coving, options, solved};
 use kernel::curve::{CurvePoint, Element, Joint, convert, measure};
 use minvar_ffi::minvar_code::MINVAR_OK;
 use minvar_ffi::*;
@@ -144,28 +143,6 @@ fn no_elements_have_no_control_points() {
         minvar_bspline_len(null_mut(), 0, control_count.start(), knot_count.start(), error)
     });
     assert_eq!((control_count.one(), knot_count.one()), (0, 0));
-}
-
-#[test]
-fn input_arrays_may_overlap_each_other() {
-    // A curve whose reference is what is measured beside it, and whose obstacle is one of its own joints' memory.
-    let joints = coving();
-    let curve = minvar_curve_through(joints.as_ptr(), 2, 0);
-    let reference = solved(&curve, &options()).elements;
-    let deformed = minvar_curve {
-        reference: reference.as_ptr(),
-        reference_count: 1,
-        reference_weight: 1.0,
-        ..minvar_curve_through(joints.as_ptr(), 2, 0)
-    };
-    let again = solved(&deformed, &options()).elements;
-    let mut place = Room::new(1);
-    works(|error| unsafe { minvar_point_at(reference.as_ptr(), 1, 0, 0.5, place.start(), error) });
-    let mut other = Room::new(1);
-    works(|error| unsafe { minvar_point_at(again.as_ptr(), 1, 0, 0.5, other.start(), error) });
-    for (a, b) in place.one().point.iter().zip(other.one().point) {
-        assert!((a - b).abs() < 1e-3, "with its own joints the curve is the reference: {a} {b}");
-    }
 }
 
 #[test]

@@ -8,7 +8,7 @@ use kernel::curve::{Functional, Region, Side};
 use kernel::solve::{Record, Silent, Status};
 use minvar_ffi::minvar_code::MINVAR_OK;
 use minvar_ffi::minvar_given::{MINVAR_FIXED, MINVAR_SIZE};
-use minvar_ffi::minvar_status::{MINVAR_CONVERGED, MINVAR_STALLED};
+use minvar_ffi::minvar_status::{MINVAR_CONVERGED, MINVAR_ITERATION_LIMIT};
 use minvar_ffi::*;
 use std::ptr::{null, null_mut};
 
@@ -133,7 +133,7 @@ fn same(
 }
 
 const CONVERGED: (minvar_status, Status) = (MINVAR_CONVERGED, Status::Converged);
-const STALLED: (minvar_status, Status) = (MINVAR_STALLED, Status::Stalled);
+const LIMITED: (minvar_status, Status) = (MINVAR_ITERATION_LIMIT, Status::IterationLimit);
 
 #[test]
 fn a_planar_curve_has_the_kernels_bits() {
@@ -177,7 +177,10 @@ fn a_closed_curve_with_sliding_joints_has_the_kernels_bits() {
         Joint::at([-0.4, -0.9, 0.0]).with_continuity(Continuity::G1),
     ];
     let curve = minvar_curve_through(joints.as_ptr(), 3, 1);
-    same((&curve, &options()), (&Curve::new(&theirs, true), &kernels_options()), CONVERGED);
+    // Few iterations: Miri is slow.
+    let options = minvar_options { max_iterations: 5, ..options() };
+    let kernels_options = Options { max_iterations: 5, ..kernels_options() };
+    same((&curve, &options), (&Curve::new(&theirs, true), &kernels_options), LIMITED);
 }
 
 #[test]
@@ -195,7 +198,10 @@ fn a_reference_shape_is_read_as_the_kernel_reads_it() {
         ..minvar_curve_through(joints.as_ptr(), 2, 0)
     };
     let theirs = Curve::open(&theirs).with_reference(Reference { elements: &elements, weight: 0.5 });
-    same((&curve, &options()), (&theirs, &kernels_options()), STALLED);
+    let options = minvar_options { quadrature_points: 0, relative_decrease: 1e-12, ..options() };
+    let kernels_options = Options { quadrature_points: 0, relative_decrease: 1e-12, ..kernels_options() };
+    let found = same((&curve, &options), (&theirs, &kernels_options), CONVERGED);
+    assert!(found.report.iterations > 0, "the reference is no curve through the joints");
 }
 
 #[test]
