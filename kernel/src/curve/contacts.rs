@@ -391,6 +391,8 @@ fn insert<const D: usize>(
     let new = of.touching(marks, contacts);
     let len = old.state_len();
     spare.part_mut(..len).copy(state.part(..len));
+    // What a side shares with its node nobody writes, but a step reads it: this memory may never have been written.
+    state.part_mut(..new.state_len()).fill(0.0);
 
     // Not at a node itself: a piece must be left on either side.
     let t = foot.t.clamp(LEAST_PIECE, 1.0 - LEAST_PIECE);
