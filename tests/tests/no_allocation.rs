@@ -444,10 +444,10 @@ fn plain(name: &str) -> &str {
 fn public_functions(layer: &str, text: &str, public: &BTreeSet<String>, found: &mut BTreeSet<String>) {
     let mut of: Option<&str> = None;
     for line in text.lines() {
-        if line.starts_with("impl") {
+        if let Some(head) = line.strip_prefix("impl") {
             // After the parameters of the `impl` itself, which may hold brackets of their own.
             let mut depth = 0;
-            let head = line["impl".len()..].trim_end_matches(" {");
+            let head = head.trim_end_matches(" {");
             let start = head.find(|c: char| {
                 depth += i32::from(c == '<') - i32::from(c == '>');
                 depth == 0 && c == ' '
