@@ -392,6 +392,30 @@ fn an_error_of_any_call_of_the_system_leaves_all_files_old_or_makes_all_new() {
     assert_eq!(names(folder.path()), sorted(&OUTPUTS));
 }
 
+/// Between its making and its locking a draft looks like one that was left behind.
+#[test]
+fn a_draft_that_another_call_clears_away_too_early_is_begun_again() {
+    if !can_inject() {
+        return;
+    }
+    let new = outputs(&[]);
+    let folder = with_old_outputs();
+    let mut command = Command::new("strace");
+    command.current_dir(folder.path()).stdin(Stdio::null()).args(["--follow-forks", "--output=/dev/null"]);
+    command
+        .args(["--inject=flock:delay_enter=2000000:when=1", MINVAR, "curve", WOODFORD, "--quiet"])
+        .args(ALL);
+    let mut child = command.spawn().expect("strace");
+    wait_for_drafts(folder.path(), 1, &mut child);
+    let first = drafts(folder.path());
+    let (code, error) = run(&mut minvar(folder.path(), &[WOODFORD, "--json", "b.json"]));
+    assert_eq!((code, error.as_str()), (Some(0), ""));
+    assert!(!first[0].exists(), "the other call cleared it away");
+    assert_eq!(child.wait().expect("strace").code(), Some(0));
+    assert_eq!(count_new(folder.path(), &new, "begun again"), 4);
+    assert!(drafts(folder.path()).is_empty());
+}
+
 fn sorted(names: &[&str]) -> Vec<String> {
     let mut names: Vec<_> = names.iter().map(|name| (*name).to_owned()).collect();
     names.sort();
