@@ -304,6 +304,8 @@ fn a_call_killed_before_any_call_of_the_system_leaves_whole_files() {
             let count = count_new(folder.path(), &new, &what);
             if output.status.signal().is_none() {
                 assert_eq!((output.status.code(), count), (Some(0), 4), "{what}: {output:?}");
+                // All outputs are new, so that nobody is given away.
+                assert!(at > 1 || calls == "fchown", "{calls} is not called");
                 break;
             }
             found[count] += 1;
@@ -316,6 +318,27 @@ fn a_call_killed_before_any_call_of_the_system_leaves_whole_files() {
     }
     println!("killed with so many files replaced: {found:?}");
     assert!(found.iter().all(|&count| count > 0) && found[0] > 20, "{found:?}");
+}
+
+/// What a disk holds after a loss of power is what was asked for: the files before their names, and then the names.
+#[test]
+fn files_are_on_the_disk_before_they_get_their_names() {
+    if !can_inject() {
+        return;
+    }
+    let folder = with_old_outputs();
+    let mut command = Command::new("strace");
+    command.current_dir(folder.path()).stdin(Stdio::null()).args(["--follow-forks", "--output=trace"]);
+    command.arg("--trace=fsync,?rename,?renameat,renameat2").args([MINVAR, "curve", WOODFORD, "--quiet"]);
+    assert!(command.args(ALL).status().expect("strace").success());
+    let trace = fs::read_to_string(folder.path().join("trace")).expect("a trace");
+    let calls: Vec<_> = ["fsync(", "rename"]
+        .iter()
+        .flat_map(|call| trace.match_indices(call).map(|(at, _)| (at, call.trim_end_matches('('))))
+        .collect::<std::collections::BTreeMap<_, _>>()
+        .into_values()
+        .collect();
+    assert_eq!(calls[..9], [["fsync"; 4].as_slice(), &["rename"; 4], &["fsync"]].concat(), "{trace}");
 }
 
 #[test]
@@ -367,6 +390,30 @@ fn an_error_of_any_call_of_the_system_leaves_all_files_old_or_makes_all_new() {
     assert_eq!((output.status.code(), error), (Some(3), words));
     assert_eq!(count_new(folder.path(), &new, "no second names"), 2);
     assert_eq!(names(folder.path()), sorted(&OUTPUTS));
+}
+
+/// Between its making and its locking a draft looks like one that was left behind.
+#[test]
+fn a_draft_that_another_call_clears_away_too_early_is_begun_again() {
+    if !can_inject() {
+        return;
+    }
+    let new = outputs(&[]);
+    let folder = with_old_outputs();
+    let mut command = Command::new("strace");
+    command.current_dir(folder.path()).stdin(Stdio::null()).args(["--follow-forks", "--output=/dev/null"]);
+    command
+        .args(["--inject=flock:delay_enter=2000000:when=1", MINVAR, "curve", WOODFORD, "--quiet"])
+        .args(ALL);
+    let mut child = command.spawn().expect("strace");
+    wait_for_drafts(folder.path(), 1, &mut child);
+    let first = drafts(folder.path());
+    let (code, error) = run(&mut minvar(folder.path(), &[WOODFORD, "--json", "b.json"]));
+    assert_eq!((code, error.as_str()), (Some(0), ""));
+    assert!(!first[0].exists(), "the other call cleared it away");
+    assert_eq!(child.wait().expect("strace").code(), Some(0));
+    assert_eq!(count_new(folder.path(), &new, "begun again"), 4);
+    assert!(drafts(folder.path()).is_empty());
 }
 
 fn sorted(names: &[&str]) -> Vec<String> {

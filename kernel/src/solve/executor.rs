@@ -8,7 +8,7 @@ pub type Task<'a> = dyn Fn(usize, &mut [f64]) + Sync + 'a;
 ///
 /// The solver cuts `slots` into chunks, one an element, and wants `task` called for each before [`Executor::run`]
 /// returns. The order, the threads and how often are the executor's affair: the solver adds the slots up in element
-/// order afterwards, so that neither changes a bit.
+/// order afterwards, so that none of them changes a bit.
 ///
 /// An executor cannot make the solver panic or go on for ever. An element that it leaves out is noticed: the state
 /// counts as one outside the problem's domain, and the solver ends [`super::Status::Stalled`] if that goes on. What
