@@ -10,6 +10,9 @@
 # make bench         minvar against Ceres, libspiro and OpenCASCADE, as ratios in one run (some minutes)
 # make profile       instructions an element of every set of Appendix A, and where they go
 # make memory        bytes of workspace, stack and code
+# make cross         the same bits on ten targets: x86 of four kinds, AArch64, RISC-V, Cortex-M4, M7, M33, WebAssembly
+# make cross-ci      the same on six of them, in minutes
+# make cross-hashes  writes tests/cross/hashes.txt anew
 # make pictures      draws docs/*.svg anew
 # make figures       draws the figures of thesis chapter 4 into docs/figures, with Table 4.1 and the iterations
 # make help          this text
@@ -24,7 +27,8 @@ OUT := coving
 LIB := target/release/libminvar.a
 WARN := -std=c11 -Wall -Wextra -Wpedantic -Wconversion -Werror
 
-.PHONY: coving test test-clients no-panic miri lint header help tools lib examples table random bench profile peer-tools memory pictures figures clean
+.PHONY: coving test test-clients no-panic miri lint header help tools lib examples table random bench profile peer-tools memory pictures figures clean \
+	cross cross-ci cross-hashes cross-curves cross-tools
 
 help:
 	@sed -n '/^#$$/q; s/^# //p' Makefile
@@ -134,6 +138,37 @@ memory: examples
 	@printf 'int main(void) { return 0; }\n' | $(CC) -Os -x c - -o target/c_examples/empty
 	@echo
 	size target/c_examples/small target/c_examples/empty
+
+# Every target on its own, as many at once as there are processors and one more: some wait for others or for the network.
+CROSS_CI := cortex-m4 aarch64 x86-64 wasm x86-64-native x86-64-debug
+CROSS_ALL := cortex-m4 cortex-m33 cortex-m7 aarch64 riscv64 x86-64 i686 wasm x86-64-native x86-64-debug
+CROSS_JOBS := $(shell expr $$(nproc) + 1)
+
+cross-tools: tools
+	@scripts/need.sh clang clang "the compiler of C for other machines"
+	@scripts/need.sh ld.lld lld "its linker"
+	@scripts/need.sh node nodejs "what runs WebAssembly"
+
+cross: cross-tools
+	@$(MAKE) --no-print-directory -k -j$(CROSS_JOBS) $(CROSS_ALL:%=cross-run-%) CROSS_FLAGS=-DWITH_LONG=1 || true
+	@scripts/cross/table.sh $(CROSS_ALL)
+
+cross-ci: cross-tools
+	@$(MAKE) --no-print-directory -k -j$(CROSS_JOBS) $(CROSS_CI:%=cross-run-%) || true
+	@scripts/cross/table.sh --short $(CROSS_CI)
+
+cross-run-%:
+	@scripts/cross/run.sh $* corpus $(CROSS_FLAGS)
+
+# What this machine computes becomes what every machine must: `make cross` says whether it does.
+cross-hashes: tools
+	@scripts/cross/run.sh x86-64 corpus -DWITH_LONG=1
+	cp target/cross/x86-64/corpus.txt tests/cross/hashes.txt
+
+cross-curves: tools
+	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "the reference that curves are checked against"
+	$(CARGO) run --locked --release -p minvar-tests --bin cross_curves >target/curves.inc
+	mv target/curves.inc tests/cross/corpus/curves.inc
 
 pictures: tools
 	$(CARGO) build --locked --release -p minvar-cli

@@ -5,6 +5,7 @@ pub mod appendix;
 pub mod bench;
 pub mod ceres;
 pub mod compare;
+pub mod cross;
 pub mod curves;
 pub mod figures;
 pub mod interface;
