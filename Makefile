@@ -1,7 +1,7 @@
 # make coving        the main job: the coving of the thesis from data to NC path and picture, in coving/
 # make test          everything that is promised, checked (Rust, a C and C++ compiler, Ceres)
 # make test-clients  the same with heavy real clients (LinuxCNC's interpreter)
-# make no-panic      proves at link time that no function of the C library can panic
+# make no-panic      proves at link time that no function of the C library can panic (no-panic-arm: on a Cortex-M)
 # make miri          the tests of the C boundary under Miri, which sees every wrong access (some minutes; nightly Rust)
 # make lint          formatting, clippy, documentation
 # make header        writes include/minvar.h anew
@@ -27,7 +27,7 @@ OUT := coving
 LIB := target/release/libminvar.a
 WARN := -std=c11 -Wall -Wextra -Wpedantic -Wconversion -Werror
 
-.PHONY: coving test test-clients no-panic miri lint header help tools lib examples table random bench profile peer-tools memory pictures figures clean \
+.PHONY: coving test test-clients no-panic no-panic-arm miri lint header help tools lib examples table random bench profile peer-tools memory pictures figures clean \
 	cross cross-ci cross-hashes cross-curves cross-tools
 
 help:
@@ -192,6 +192,10 @@ lint: tools
 no-panic: tools
 	@scripts/need.sh $(CC) gcc "the linker"
 	scripts/no_panic.sh
+
+# The same on a Cortex-M.
+no-panic-arm: cross-tools
+	scripts/no_panic.sh thumbv7em-none-eabihf
 
 header: tools
 	touch ffi/build.rs
