@@ -3,6 +3,8 @@
 # make test-clients  the same with heavy real clients (LinuxCNC's interpreter)
 # make no-panic      proves at link time that no function of the C library can panic (no-panic-arm: on a Cortex-M)
 # make miri          the tests of the C boundary under Miri, which sees every wrong access (some minutes; nightly Rust)
+# make fuzz          hostile input, FUZZ_SECONDS (60) each: the C boundary, the reader, paths, against Ceres (FUZZ=path: one)
+# make sanitize      the C examples and tests under AddressSanitizer and UndefinedBehaviorSanitizer, and valgrind
 # make lint          formatting, clippy, documentation
 # make header        writes include/minvar.h anew
 # make table         Appendix A of the thesis: published, ours, Ceres; iterations from the data alone
@@ -12,9 +14,11 @@
 # make memory        bytes of workspace, stack and code
 # make cross         the same bits on ten targets: x86 of four kinds, AArch64, RISC-V, Cortex-M4, M7, M33, WebAssembly
 # make cross-ci      the same on six of them, in minutes
+# make bounds        stack, instructions and code on x86-64, Cortex-M7 and M4: writes docs/bounds.md anew (some minutes)
 # make cross-hashes  writes tests/cross/hashes.txt anew
 # make pictures      draws docs/*.svg anew
 # make figures       draws the figures of thesis chapter 4 into docs/figures, with Table 4.1 and the iterations
+# make mutants       small changes of the kernel: which of them the tests notice (hours; MUTANTS="--sample 500" for some)
 # make help          this text
 #
 # Every target installs what it needs from Debian's packages, if it may.
@@ -27,8 +31,8 @@ OUT := coving
 LIB := target/release/libminvar.a
 WARN := -std=c11 -Wall -Wextra -Wpedantic -Wconversion -Werror
 
-.PHONY: coving test test-clients no-panic no-panic-arm miri lint header help tools lib examples table random bench profile peer-tools memory pictures figures clean \
-	cross cross-ci cross-hashes cross-curves cross-tools
+.PHONY: coving test test-clients no-panic no-panic-arm miri fuzz sanitize lint header help tools lib examples table random \
+	bench profile peer-tools memory pictures figures clean cross cross-ci cross-hashes cross-curves cross-tools bounds mutants
 
 help:
 	@sed -n '/^#$$/q; s/^# //p' Makefile
@@ -80,6 +84,15 @@ miri: tools
 		echo "Miri is missing: rustup toolchain install nightly --component miri --component rust-src" >&2; exit 1; }
 	MIRIFLAGS="$(MIRI_STRICT)" $(MIRI) test --locked -p minvar-ffi-tests --features no-assembly
 	MIRIFLAGS="$(MIRI_STRICT) -Zmiri-tree-borrows" $(MIRI) test --locked -p minvar-ffi-tests --features no-assembly
+
+# As often as wanted: `make fuzz FUZZ=reference FUZZ_SECONDS=1800`. Exit status 1 if something is found.
+FUZZ ?=
+
+fuzz: tools
+	scripts/fuzz.sh $(FUZZ)
+
+sanitize: tools
+	scripts/sanitize.sh
 
 # Published / ours / Ceres for every set of Appendix A.
 table: tools
@@ -156,6 +169,8 @@ cross: cross-tools
 cross-ci: cross-tools
 	@$(MAKE) --no-print-directory -k -j$(CROSS_JOBS) $(CROSS_CI:%=cross-run-%) || true
 	@scripts/cross/table.sh --short $(CROSS_CI)
+	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "what the package of tests is built with"
+	@scripts/cross/published.sh
 
 cross-run-%:
 	@scripts/cross/run.sh $* corpus $(CROSS_FLAGS)
@@ -170,6 +185,13 @@ cross-curves: tools
 	$(CARGO) run --locked --release -p minvar-tests --bin cross_curves >target/curves.inc
 	mv target/curves.inc tests/cross/corpus/curves.inc
 
+# Stack, instructions, code: docs/bounds.md.
+bounds: cross-tools
+	@scripts/need.sh valgrind valgrind "what counts instructions"
+	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "what the package of tests is built with"
+	scripts/cross/bounds.sh >target/bounds.md
+	mv target/bounds.md docs/bounds.md
+
 pictures: tools
 	$(CARGO) build --locked --release -p minvar-cli
 	@mkdir -p docs
@@ -183,8 +205,20 @@ figures: tools
 	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "the reference that Table 4.1 is compared with"
 	$(CARGO) run --locked --release -p minvar-tests --bin figures
 
+# All changes are woven into one copy of the kernel in target/mutants. Stopped and started again, it goes on.
+mutants: tools
+	@scripts/need.sh $(CXX) g++ "the C++ compiler"
+	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "the reference that curves are checked against"
+	@command -v cargo-mutants >/dev/null || test -x target/mutants/tools/bin/cargo-mutants || \
+		$(CARGO) install --locked --version 27.1.0 --root target/mutants/tools cargo-mutants
+	PATH="$$PATH:$(CURDIR)/target/mutants/tools/bin" CARGO_TARGET_DIR=$(CURDIR)/target/mutants/tool \
+		nice $(CARGO) run --locked --release --manifest-path mutants/Cargo.toml -- $(MUTANTS)
+
 lint: tools
 	$(CARGO) fmt --all --check
+	$(CARGO) fmt --check --manifest-path fuzz/Cargo.toml
+	@$(CARGO) metadata --locked --format-version 1 --manifest-path fuzz/Cargo.toml >/dev/null || { \
+		echo "fuzz/Cargo.lock is behind Cargo.lock: cargo fetch --manifest-path fuzz/Cargo.toml" >&2; exit 1; }
 	$(CARGO) clippy --locked --workspace --exclude minvar-ffi --all-targets -- -D warnings
 	$(CARGO) clippy --locked -p minvar-ffi -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --locked --workspace --exclude minvar-ffi --no-deps

@@ -71,7 +71,8 @@ typedef enum minvar_code {
     MINVAR_SIDES_DIFFER = 18,
     // Fewer than two joints have positions.
     MINVAR_NO_POSITION = 19,
-    // The data are too large or too small for the arithmetic: lengths must be from 1e-90 to 1e90.
+    // The data are too large or too small for the arithmetic: lengths must be from 1e-90 to 1e90, and given radii of
+    // curvature at least 1e-12 of the longest step between joints.
     MINVAR_SIZE_OUT_OF_RANGE = 20,
     // A planar curve was asked for but the data do not lie in a plane.
     MINVAR_NOT_PLANAR = 21,
@@ -276,8 +277,9 @@ typedef struct minvar_options {
     // start values alone lead elsewhere. At most 16. Default 0.
     uint32_t continuation;
     // Converged when another step promises to lower the functional by less than this fraction, or 20 iterations
-    // together lowered it by less than a thousand times that; 0 to below 1. Above 1e-9 converged, too, when no step as
-    // long as an element's speed promises more, and no other minima of single elements are looked for. Default 1e-12.
+    // together lowered it by less than a thousand times that; 0 to below 1. Of a functional that vanishes: this fraction
+    // of a thousandth of what a bend by a radian on every chord costs. Above 1e-9 converged, too, when no step as long as
+    // an element's speed promises more, and no other minima of single elements are looked for. Default 1e-12.
     double relative_decrease;
     // This weight times the length is added to the functional: a tension. In the functional's unit over a length, 0 or
     // more; 0 with a scale-invariant functional. Default 0.
@@ -285,7 +287,7 @@ typedef struct minvar_options {
     // This weight times the bending energy is added to the functional. In the functional's unit times a length, 0 or
     // more; 0 with a scale-invariant functional. Default 0.
     double bending;
-    // The length of the curve; 0 leaves it free. Default 0.
+    // The length of the curve, which a converged one has to a millionth of it; 0 leaves it free. Default 0.
     double length;
     // How far the curve may be from the true minimum, a length: spans are divided further until an estimate is below it,
     // into at most `elements_per_span` elements each. 0 takes just `elements_per_span`. Default 0.
@@ -385,6 +387,7 @@ typedef struct minvar_record {
 typedef int32_t (*minvar_observer)(void *context, size_t iteration, const struct minvar_record *record);
 
 // How a curve came out. All figures in the caller's units; `value`, `fine_value` and `decrement` in the functional's.
+// Of a shape that has grown beyond the arithmetic figures are infinite; none is NaN.
 typedef struct minvar_report {
     // How the computation ended.
     enum minvar_status status;
@@ -564,7 +567,7 @@ enum minvar_code minvar_bspline_len(const struct minvar_element *elements,
 // minvar_bspline_len() says; entries beyond that are left alone. The arrays must not overlap.
 //
 // Errors: MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_RESULT_TOO_SHORT, MINVAR_IRREGULAR where an element
-// starts or ends without speed at another.
+// starts or ends without speed at another, or with so much less than it that two knots coincide.
 enum minvar_code minvar_bspline(const struct minvar_element *elements,
                                 size_t count,
                                 double (*controls)[3],

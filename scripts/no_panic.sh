@@ -27,10 +27,7 @@ link() {
     # shellcheck disable=SC2086
     CARGO_TARGET_DIR=$folder $cargo rustc --locked --release -p minvar-ffi --lib --crate-type staticlib \
         --target "$triple" -- $flags >"$log" 2>&1 || return 1
-    library=$folder/$triple/release/libminvar.a
-    # shellcheck disable=SC2046
-    ld.lld -m armelf --gc-sections -e minvar_version $(functions "$library" | sed 's/^/-u /') "$library" \
-        -o "$folder/linked" >>"$log" 2>&1
+    scripts/cross/whole.sh "$folder/$triple/release/libminvar.a" "$folder/linked" >>"$log" 2>&1
 }
 
 functions() { nm "$@" --defined-only 2>/dev/null | awk '$2 == "T" && $3 ~ /^minvar_/ {print $3}' | sort -u; }

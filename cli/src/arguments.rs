@@ -9,15 +9,15 @@ use std::path::{Path, PathBuf};
 /// Fair curves: from a file of constraints to pictures, tables and NC paths.
 #[derive(Debug, Parser)]
 #[command(name = "minvar", version, max_term_width = 100, arg_required_else_help = true)]
-pub(crate) struct Arguments {
+pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
-    pub(crate) command: Command,
+    pub command: Command,
 }
 
 /// The things to do.
 #[derive(Debug, Subcommand)]
-pub(crate) enum Command {
+pub enum Command {
     /// Computes the fairest curve through joints
     #[command(after_long_help = CURVE_HELP, after_help = "`minvar curve --help` describes the input file, with examples.")]
     Curve(Box<CurveArguments>),
@@ -80,7 +80,7 @@ Exit codes:
 
 /// `minvar curve`
 #[derive(Debug, Args)]
-pub(crate) struct CurveArguments {
+pub struct CurveArguments {
     /// The constraints; `-` reads the standard input
     pub(crate) file: PathBuf,
 

@@ -44,57 +44,57 @@ mod resolve;
 mod tests;
 mod words;
 
-pub(crate) use fault::Fault;
+pub use fault::Fault;
 
 use minvar::curve::Obstacle;
 use words::Place;
 
 /// A curve to compute, as the file says.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Specification {
+pub struct Specification {
     /// The curve's name.
-    pub(crate) name: String,
+    pub name: String,
     /// Whether the last joint is joined to the first.
-    pub(crate) closed: bool,
+    pub closed: bool,
     /// The joints in the curve's order: at least two, three of a closed curve.
-    pub(crate) joints: Vec<NamedJoint>,
+    pub joints: Vec<NamedJoint>,
     /// What the curve keeps clear of, in the file's order.
-    pub(crate) obstacles: Vec<PlacedObstacle>,
+    pub obstacles: Vec<PlacedObstacle>,
 }
 
 /// An obstacle and where the file has it.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct PlacedObstacle {
+pub struct PlacedObstacle {
     /// The point or segment with its clearance and side.
-    pub(crate) shape: Obstacle,
+    pub shape: Obstacle,
     /// The line of its opening parenthesis, from 1.
-    pub(crate) line: usize,
+    pub line: usize,
     /// The column of its opening parenthesis in characters, from 1.
-    pub(crate) column: usize,
+    pub column: usize,
 }
 
 /// One joint of the curve.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct NamedJoint {
+pub struct NamedJoint {
     /// Its name, unique in the file.
-    pub(crate) name: String,
+    pub name: String,
     /// What is continuous here.
-    pub(crate) continuity: Continuity,
+    pub continuity: Continuity,
     /// The position: fixed, a start value, or sliding.
-    pub(crate) position: Given,
+    pub position: Given,
     /// The tangent arriving and leaving: the same unless the joint is [`Continuity::G0`]. Any length but zero.
-    pub(crate) tangent: [Given; 2],
+    pub tangent: [Given; 2],
     /// The curvature vector arriving and leaving: the same if the joint is [`Continuity::G2`].
-    pub(crate) curvature: [Given; 2],
+    pub curvature: [Given; 2],
     /// The line of its opening parenthesis, from 1.
-    pub(crate) line: usize,
+    pub line: usize,
     /// The column of its opening parenthesis in characters, from 1.
-    pub(crate) column: usize,
+    pub column: usize,
 }
 
 /// How smoothly a curve passes a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Continuity {
+pub enum Continuity {
     /// Position only: a corner.
     G0,
     /// Position and tangent.
@@ -105,7 +105,7 @@ pub(crate) enum Continuity {
 
 /// What is known of a vector beforehand.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Given {
+pub enum Given {
     /// Nothing.
     Free,
     /// A value to start from.
@@ -122,22 +122,22 @@ pub(crate) enum Given {
 
 impl Given {
     /// Whether the value must be kept.
-    pub(crate) fn is_fixed(self) -> bool {
+    pub fn is_fixed(self) -> bool {
         matches!(self, Self::Fixed(_))
     }
 }
 
 /// A file that could be read, and what is odd about it.
 #[derive(Debug)]
-pub(crate) struct Reading {
+pub struct Reading {
     /// The curve.
-    pub(crate) specification: Specification,
+    pub specification: Specification,
     /// What the user may not have meant.
-    pub(crate) warnings: Vec<Fault>,
+    pub warnings: Vec<Fault>,
 }
 
 /// Reads the bytes of a file. Linear in their number.
-pub(crate) fn read(bytes: &[u8]) -> Result<Reading, Box<Fault>> {
+pub fn read(bytes: &[u8]) -> Result<Reading, Box<Fault>> {
     let text = match std::str::from_utf8(bytes) {
         Ok(text) => text.strip_prefix('\u{feff}').unwrap_or(text),
         Err(error) => return Err(not_text(bytes, error.valid_up_to())),
@@ -146,7 +146,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<Reading, Box<Fault>> {
 }
 
 /// What the kernel says of a joint or an obstacle, at its line and column in the file that was read.
-pub(crate) fn fault_at(bytes: &[u8], [line, column]: [usize; 2], message: impl Into<String>) -> Box<Fault> {
+pub fn fault_at(bytes: &[u8], [line, column]: [usize; 2], message: impl Into<String>) -> Box<Fault> {
     let text = String::from_utf8_lossy(bytes);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     Fault::error(text, words::place_at(text, line, column), message)

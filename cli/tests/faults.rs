@@ -82,6 +82,14 @@ fn assert_old(folder: &Path, what: &str) {
     }
 }
 
+/// The output that a message says could not be written: one of them, with its size.
+fn not_written(sizes: &[usize], why: &str, error: &str) -> &'static str {
+    let told =
+        |name: &str, size: &usize| error == format!("error: cannot write {name} ({size} bytes): {why}\n");
+    let found = OUTPUTS.into_iter().zip(sizes).find(|(name, size)| told(name, size));
+    found.unwrap_or_else(|| panic!("{sizes:?}: {error}")).0
+}
+
 #[test]
 fn a_file_that_may_not_grow_is_named_with_its_size_and_nothing_changes() {
     // The table is larger than the picture, which is written first.
@@ -99,14 +107,7 @@ fn a_file_that_may_not_grow_is_named_with_its_size_and_nothing_changes() {
             break;
         }
         assert_eq!(code, Some(3), "{blocks} blocks: {error}");
-        let (name, size) = OUTPUTS
-            .iter()
-            .zip(&sizes)
-            .find(|(name, size)| {
-                error == format!("error: cannot write {name} ({size} bytes): file too large\n")
-            })
-            .unwrap_or_else(|| panic!("{blocks} blocks: {error}"));
-        failed.insert((*name, *size));
+        failed.insert(not_written(&sizes, "file too large", &error));
         assert_old(folder.path(), &error);
         assert_eq!(drafts(folder.path()), NOTHING, "{error}");
     }
@@ -513,6 +514,11 @@ fn send(signal: &str, to: u32) {
     assert!(sent.success());
 }
 
+/// Runs the command as a shell in the foreground does: what a shell runs in the background ignores INT and QUIT, what
+/// nohup runs HUP, and hands that on.
+const HEEDING: &str = "env --default-signal true 2>/dev/null && exec env --default-signal \"$0\" curve \"$@\"; \
+                       exec \"$0\" curve \"$@\"";
+
 /// A computation that takes much longer than anybody waits.
 const LONG: [&str; 7] =
     [SPACE_CURVE, "--elements-per-span", "1024", "--functional", "space-mvc", "--minima", "100"];
@@ -521,8 +527,7 @@ const LONG: [&str; 7] =
 fn a_signal_ends_a_long_solve_at_once_and_nothing_is_written() {
     for (signal, number) in [("INT", 2), ("TERM", 15), ("HUP", 1), ("QUIT", 3)] {
         let folder = with_old_outputs();
-        let script = "ulimit -c 0; exec \"$0\" curve \"$@\"";
-        let mut command = shell(folder.path(), script, &LONG);
+        let mut command = shell(folder.path(), &format!("ulimit -c 0; {HEEDING}"), &LONG);
         let mut child = command.args(ALL).arg("--chords").stdout(Stdio::null()).spawn().expect("a call");
         std::thread::sleep(Duration::from_millis(300));
         assert!(child.try_wait().expect("a child").is_none(), "the solve is not long enough for this test");
@@ -539,8 +544,8 @@ fn a_signal_ends_a_long_solve_at_once_and_nothing_is_written() {
 #[test]
 fn a_shell_shows_a_call_ended_by_ctrl_c_as_130() {
     let folder = tempfile::tempdir().expect("a folder");
-    let script = "sh -c 'echo $$; exec \"$0\" curve \"$@\"' \"$0\" \"$@\" --svg a.svg; echo \"shows $?\"";
-    let mut child = shell(folder.path(), script, &LONG)
+    let script = format!("sh -c 'echo $$; {HEEDING}' \"$0\" \"$@\" --svg a.svg; echo \"shows $?\"");
+    let mut child = shell(folder.path(), &script, &LONG)
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()
@@ -566,7 +571,7 @@ fn a_signal_while_writing_changes_no_file() {
     let folder = with_old_outputs();
     fs::remove_file(folder.path().join("a.json")).expect("JSON");
     fifo(folder.path(), "a.json");
-    let mut child = minvar(folder.path(), &[WOODFORD]).args(ALL).spawn().expect("a call");
+    let mut child = shell(folder.path(), HEEDING, &[WOODFORD]).args(ALL).spawn().expect("a call");
     wait_for_drafts(folder.path(), 3, &mut child);
     send("INT", child.id());
     assert_eq!(child.wait().expect("a child").signal(), Some(2));
@@ -714,14 +719,7 @@ fn on_a_full_disk_nothing_changes_and_the_message_says_what_did_not_fit() {
         let old: Vec<_> =
             OUTPUTS.iter().map(|name| format!("old {name}").chars().take(9).collect::<String>()).collect();
         assert_eq!(lines[2..], old, "{kilobytes} kB: {error}");
-        let (name, _) = OUTPUTS
-            .iter()
-            .zip(&sizes)
-            .find(|(name, size)| {
-                error == format!("error: cannot write {name} ({size} bytes): no space left on device\n")
-            })
-            .unwrap_or_else(|| panic!("{kilobytes} kB: {error}"));
-        failed.insert(*name);
+        failed.insert(not_written(&sizes, "no space left on device", &error));
     }
     assert!(written && failed.len() >= 2, "files that did not fit: {failed:?}");
 

@@ -40,7 +40,8 @@ pub enum minvar_code {
     MINVAR_SIDES_DIFFER = 18,
     /// Fewer than two joints have positions.
     MINVAR_NO_POSITION = 19,
-    /// The data are too large or too small for the arithmetic: lengths must be from 1e-90 to 1e90.
+    /// The data are too large or too small for the arithmetic: lengths must be from 1e-90 to 1e90, and given radii of
+    /// curvature at least 1e-12 of the longest step between joints.
     MINVAR_SIZE_OUT_OF_RANGE = 20,
     /// A planar curve was asked for but the data do not lie in a plane.
     MINVAR_NOT_PLANAR = 21,

@@ -58,7 +58,7 @@ pub unsafe extern "C" fn minvar_bspline_len(
 /// minvar_bspline_len() says; entries beyond that are left alone. The arrays must not overlap.
 ///
 /// Errors: MINVAR_NO_ELEMENTS, MINVAR_ELEMENT_NOT_FINITE, MINVAR_RESULT_TOO_SHORT, MINVAR_IRREGULAR where an element
-/// starts or ends without speed at another.
+/// starts or ends without speed at another, or with so much less than it that two knots coincide.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn minvar_bspline(
     elements: *const minvar_element,

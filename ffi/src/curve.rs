@@ -169,8 +169,9 @@ pub struct minvar_options {
     /// start values alone lead elsewhere. At most 16. Default 0.
     pub continuation: u32,
     /// Converged when another step promises to lower the functional by less than this fraction, or 20 iterations
-    /// together lowered it by less than a thousand times that; 0 to below 1. Above 1e-9 converged, too, when no step as
-    /// long as an element's speed promises more, and no other minima of single elements are looked for. Default 1e-12.
+    /// together lowered it by less than a thousand times that; 0 to below 1. Of a functional that vanishes: this fraction
+    /// of a thousandth of what a bend by a radian on every chord costs. Above 1e-9 converged, too, when no step as long as
+    /// an element's speed promises more, and no other minima of single elements are looked for. Default 1e-12.
     pub relative_decrease: f64,
     /// This weight times the length is added to the functional: a tension. In the functional's unit over a length, 0 or
     /// more; 0 with a scale-invariant functional. Default 0.
@@ -178,7 +179,7 @@ pub struct minvar_options {
     /// This weight times the bending energy is added to the functional. In the functional's unit times a length, 0 or
     /// more; 0 with a scale-invariant functional. Default 0.
     pub bending: f64,
-    /// The length of the curve; 0 leaves it free. Default 0.
+    /// The length of the curve, which a converged one has to a millionth of it; 0 leaves it free. Default 0.
     pub length: f64,
     /// How far the curve may be from the true minimum, a length: spans are divided further until an estimate is below it,
     /// into at most `elements_per_span` elements each. 0 takes just `elements_per_span`. Default 0.
@@ -214,6 +215,7 @@ pub struct minvar_record {
 }
 
 /// How a curve came out. All figures in the caller's units; `value`, `fine_value` and `decrement` in the functional's.
+/// Of a shape that has grown beyond the arithmetic figures are infinite; none is NaN.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct minvar_report {

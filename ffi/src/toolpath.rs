@@ -238,6 +238,7 @@ pub unsafe extern "C" fn minvar_write_gcode(
             let given = reference(options, "options")?;
             let write = write.ok_or(null("write"))?;
             let summary = Output::optional(summary, "summary")?;
+            let elements = elements_of(elements, count)?;
             let options = GcodeOptions {
                 tolerance: given.tolerance,
                 units: match given.units {
@@ -282,7 +283,7 @@ pub unsafe extern "C" fn minvar_write_gcode(
                 comments: given.comments != 0,
             };
             let mut text = Text { write, context };
-            let found = toolpath::write_gcode(elements_of(elements, count)?, &options, &mut text)?;
+            let found = toolpath::write_gcode(elements, &options, &mut text)?;
             if let Some(summary) = summary {
                 summary.put(minvar_gcode_summary {
                     lines: found.lines,

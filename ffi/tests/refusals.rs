@@ -415,4 +415,7 @@ fn missing_functions_and_options_are_refused_by_name() {
         minvar_write_gcode(&bend, 1, &unknown, Some(write), null_mut(), null_mut(), error)
     });
     assert_eq!(index, 6);
+    refused(MINVAR_NULL_POINTER, "argument elements ", |error| unsafe {
+        minvar_write_gcode(null(), 1, &unknown, Some(write), null_mut(), null_mut(), error)
+    });
 }

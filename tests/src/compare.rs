@@ -54,6 +54,25 @@ pub fn kernel_joints(figure: &Figure) -> Vec<curve::Joint> {
         .collect()
 }
 
+/// A kernel's joint, alike on both sides, as the reference takes it.
+pub fn reference_joint(joint: &curve::Joint) -> ceres::Joint {
+    let given = |quantity: &Quantity| match quantity.given {
+        curve::Given::FREE => Given::Free,
+        curve::Given::INITIAL => Given::Initial(quantity.value),
+        _ => Given::Fixed(quantity.value),
+    };
+    ceres::Joint {
+        position: given(&joint.position),
+        tangent: given(&joint.tangent[0]),
+        curvature: given(&joint.curvature[0]),
+        continuity: match joint.continuity {
+            curve::Continuity::G0 => Continuity::G0,
+            curve::Continuity::G1 => Continuity::G1,
+            _ => Continuity::G2,
+        },
+    }
+}
+
 /// minvar's solution of a figure.
 ///
 /// # Panics

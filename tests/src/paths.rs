@@ -39,13 +39,22 @@ pub fn norm(a: Point) -> f64 {
 
 /// An arc from its ends and centre.
 pub fn arc(start: Point, end: Point, centre: [f64; 2], clockwise: bool) -> Piece {
-    let a0 = (start[1] - centre[1]).atan2(start[0] - centre[0]);
-    let a1 = (end[1] - centre[1]).atan2(end[0] - centre[0]);
-    let full = std::f64::consts::TAU;
+    let from = [start[0] - centre[0], start[1] - centre[1]];
+    let angle = angle_to(from, [end[0] - start[0], end[1] - start[1]]);
     // As RS-274 has it: coinciding ends are a full turn.
-    let turn = if clockwise { -(a0 - a1).rem_euclid(full) } else { (a1 - a0).rem_euclid(full) };
-    let turn = if turn == 0.0 { if clockwise { -full } else { full } } else { turn };
+    let full = std::f64::consts::TAU;
+    let turn = match (clockwise, angle) {
+        (true, 0.0..) => angle - full,
+        (false, ..=0.0) => angle + full,
+        _ => angle,
+    };
     Piece::Arc { start, end, centre, turn }
+}
+
+/// The angle at an arc's centre from `from` to `from + by`: as accurate as `by` is, however far the centre.
+fn angle_to(from: [f64; 2], by: [f64; 2]) -> f64 {
+    let along = from[0] * (from[0] + by[0]) + from[1] * (from[1] + by[1]);
+    (from[0] * by[1] - from[1] * by[0]).atan2(along)
 }
 
 impl Piece {
@@ -54,16 +63,15 @@ impl Piece {
         match *self {
             Piece::Line(a, b) => [0, 1, 2].map(|d: usize| a[d] + s * (b[d] - a[d])),
             Piece::Arc { start, end, centre, turn } => {
+                // By what is added to the start: a distant centre would take digits.
                 let (x, y) = (start[0] - centre[0], start[1] - centre[1]);
-                let r0 = x.hypot(y);
-                let r1 = (end[0] - centre[0]).hypot(end[1] - centre[1]);
-                let (sin, cos) = (s * turn).sin_cos();
-                let stretch = 1.0 + s * (r1 - r0) / r0;
-                [
-                    centre[0] + stretch * (cos * x - sin * y),
-                    centre[1] + stretch * (sin * x + cos * y),
-                    start[2],
-                ]
+                let (to_x, to_y) = (end[0] - start[0], end[1] - start[1]);
+                let (r0, r1) = (x.hypot(y), (end[0] - centre[0]).hypot(end[1] - centre[1]));
+                let grown = (to_x * (2.0 * x + to_x) + to_y * (2.0 * y + to_y)) / (r0 + r1);
+                let (sin, half) = ((s * turn).sin(), (0.5 * s * turn).sin());
+                let (dx, dy) = (-2.0 * half * half * x - sin * y, -2.0 * half * half * y + sin * x);
+                let stretch = s * grown / r0;
+                [start[0] + dx + stretch * (x + dx), start[1] + dy + stretch * (y + dy), start[2]]
             }
         }
     }
@@ -79,11 +87,9 @@ impl Piece {
                 norm(sub(p, [a[0] + s * u[0], a[1] + s * u[1], a[2] + s * u[2]]))
             }
             Piece::Arc { start, end, centre, turn } => {
-                let here = [p[0] - centre[0], p[1] - centre[1]];
                 let from = [start[0] - centre[0], start[1] - centre[1]];
                 // The angle from the start in the direction of the turn.
-                let angle =
-                    (from[0] * here[1] - from[1] * here[0]).atan2(from[0] * here[0] + from[1] * here[1]);
+                let angle = angle_to(from, [p[0] - start[0], p[1] - start[1]]);
                 let angle = (angle * turn.signum()).rem_euclid(std::f64::consts::TAU);
                 let ends = norm(sub(p, start)).min(norm(sub(p, end)));
                 if angle <= turn.abs() {

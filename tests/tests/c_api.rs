@@ -165,23 +165,6 @@ fn the_cpp_wrapper_refuses_a_library_of_another_interface() {
 }
 
 #[test]
-fn valgrind_finds_nothing_where_it_is_installed() {
-    if !Command::new("valgrind").arg("--version").output().is_ok_and(|output| output.status.success()) {
-        eprintln!("valgrind is not installed: not checked");
-        return;
-    }
-    for name in ["coving.c", "bad_input.c", "faults.c"] {
-        let mut command = Command::new("valgrind");
-        command.args(["--quiet", "--error-exitcode=9", "--leak-check=full"]).arg(build(
-            &[name],
-            Link::Static,
-            &["-g3"],
-        ));
-        must(&mut command, "valgrind");
-    }
-}
-
-#[test]
 fn every_enum_that_a_comment_names_is_declared() {
     let header = header();
     let names: BTreeSet<&str> = header

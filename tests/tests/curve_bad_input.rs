@@ -6,7 +6,7 @@ use minvar::curve::{
     Report, elements_len, solve, workspace_len,
 };
 use minvar::solve::{Control, Observer, Record, Silent, Status};
-use minvar_tests::curves::{MARKER, deviation, distance, end_shape, norm, solve_curve};
+use minvar_tests::curves::{MARKER, add, deviation, distance, end_shape, norm, solve_curve, times};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use std::time::Instant;
@@ -215,6 +215,21 @@ fn a_curvature_that_is_not_perpendicular_is_refused() {
         let mut joints = good();
         joints[0] = joints[0].with_curvature(Quantity::fixed(curvature));
         assert!(attempt(&joints, false, &Options::DEFAULT).0.is_ok());
+    }
+    // The limit is a millionth of its length, however the tangent lies and however long it is.
+    for (tangent, across) in [([1.0, 1.0, 1.0], [1.0, -1.0, 0.0]), ([3e9, 0.0, 4e9], [0.0, 1e-3, 0.0])] {
+        for (leans, is_refused) in [(0.9e-6, false), (1.1e-6, true)] {
+            let curvature = add(across, times(tangent, leans * norm(across) / norm(tangent)));
+            let mut joints = good();
+            joints[0] = Joint::at(joints[0].position.value)
+                .with_tangent(Quantity::fixed(tangent))
+                .with_curvature(Quantity::fixed(curvature));
+            assert_eq!(
+                attempt(&joints, false, &Options::DEFAULT).0.err() == Some(error),
+                is_refused,
+                "{leans}"
+            );
+        }
     }
 }
 

@@ -2,11 +2,11 @@
 //! what must hold of them.
 
 use minvar::curve::{
-    Curve, CurveError, Element, Functional, Joint, Obstacle, OptionName, Options, Quantity, Reference,
-    Report, Side, elements_len, measure, minima, solve, update, workspace_len,
+    Curve, CurveError, Element, Functional, Joint, LENGTH_TRUSTED, Obstacle, OptionName, Options, Quantity,
+    Reference, Report, Side, elements_len, measure, minima, solve, update, workspace_len,
 };
-use minvar::solve::{Silent, Status};
-use minvar_tests::curves::{deviation, distance, solve_curve};
+use minvar::solve::{Record, Silent, Status};
+use minvar_tests::curves::{add, cross, deviation, distance, solve_curve, times, unit};
 use std::collections::BTreeMap;
 
 const WOODFORD: [[f64; 2]; 7] =
@@ -176,6 +176,44 @@ fn a_tolerance_is_kept_by_as_few_elements_as_it_needs() {
     let options = Options { tolerance: 1e-3, elements_per_span: 1, ..Options::DEFAULT };
     let (report, _) = solve_curve(&winding, false, &options).expect("good data");
     assert_eq!((report.status, report.error), (Status::Stalled, f64::INFINITY));
+}
+
+#[test]
+fn a_converged_curve_has_its_given_length_whatever_else_was_asked_for() {
+    let upright = |end: Joint| end.with_tangent(Quantity::fixed([0.0, 1.0, 0.0]));
+    let hook = vec![upright(Joint::at([0.0, 0.0, 0.0])), upright(Joint::at([6.0, 1.2, 0.0]))];
+    let mut converged = [0, 0];
+    for joints in [woodford(), hook] {
+        for (length, tolerance, elements_per_span) in [8.3, 9.5, 14.0]
+            .into_iter()
+            .flat_map(|length| [(length, 1.0, 1), (length, 1.0, 64), (length, 1e-5, 64), (length, 0.0, 2)])
+        {
+            for relative_decrease in [1e-12, 0.5] {
+                for functional in [Functional::MVC, Functional::MEC] {
+                    let options = Options {
+                        functional,
+                        tolerance,
+                        elements_per_span,
+                        relative_decrease,
+                        length,
+                        ..Options::DEFAULT
+                    };
+                    let (report, elements) = solve_curve(&joints, false, &options).expect("good data");
+                    if report.status != Status::Converged {
+                        continue;
+                    }
+                    close(
+                        measure::length(&elements[..report.elements]),
+                        length,
+                        1.001 * LENGTH_TRUSTED,
+                        "the length",
+                    );
+                    converged[usize::from(tolerance > 0.0)] += 1;
+                }
+            }
+        }
+    }
+    assert!(converged[0] >= 12 && converged[1] >= 32, "few converged: {converged:?}");
 }
 
 #[test]
@@ -686,4 +724,223 @@ fn what_grows_without_limit_is_said_to_within_few_iterations() {
             assert_eq!(report.status, Status::Converged, "{degrees}: the advice is good");
         }
     }
+}
+
+#[test]
+fn points_on_a_line_in_space_are_in_a_plane_wherever_the_line_points() {
+    for direction in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -1.0], [0.0, 3.0, 4.0], [1.0, -2.0, 2.0]] {
+        let points = [0.0, 1.0, 2.5].map(|t| Joint::at(direction.map(|x: f64| x * t)));
+        let (report, _) = solve_curve(&points, false, &Options::DEFAULT).expect("good data");
+        assert!(report.planar && report.status == Status::Converged, "{direction:?}: {report:?}");
+        let size = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+        close(report.length, 2.5 * size, 1e-9, "length");
+        assert!(report.value < 1e-12, "{report:?}");
+    }
+}
+
+#[test]
+fn bending_beside_an_energy_weighs_the_energy_and_changes_no_curve() {
+    let options = Options { functional: Functional::MEC, ..Options::DEFAULT };
+    let (plain, elements) = solve_curve(&woodford(), false, &options).expect("good data");
+    let (more, same) =
+        solve_curve(&woodford(), false, &Options { bending: 0.5, ..options }).expect("good data");
+    assert_eq!((plain.status, more.status), (Status::Converged, Status::Converged));
+    close(more.value, 1.5 * plain.value, 1e-9, "value");
+    close(more.fine_value, 1.5 * plain.fine_value, 1e-9, "fine value");
+    close(more.fine_value, 1.5 * more.bending, 1e-12, "of its integral");
+    assert!(deviation(&elements, &same, 6) < 1e-6);
+}
+
+#[test]
+fn iterations_tell_the_functional_in_the_callers_unit() {
+    for scale in [1.0_f64, 1e-3, 1e4] {
+        let joints = WOODFORD.map(|[x, y]| Joint::at([scale * x, scale * y, 0.0]));
+        // With the power of length that makes it free of a scale, and that by which it sinks with one.
+        for (functional, lengths, power, tension, bending) in [
+            (Functional::MVC, 0, 3, 0.0, 0.0),
+            (Functional::MVC, 0, 3, 0.3, 0.0),
+            (Functional::MVC, 0, 3, 0.0, 0.7),
+            (Functional::MEC, 0, 1, 0.0, 0.0),
+            (Functional::MEC, 0, 1, 0.2, 0.0),
+            (Functional::SI_MVC, 3, 0, 0.0, 0.0),
+            (Functional::SI_MEC, 1, 0, 0.0, 0.0),
+        ] {
+            let options = Options {
+                functional,
+                tension: tension / scale.powi(power + 1),
+                bending: bending / (scale * scale),
+                relative_decrease: 1e-3,
+                ..Options::DEFAULT
+            };
+            let curve = Curve::open(&joints);
+            let mut workspace = vec![f64::NAN; workspace_len(&curve, &options).expect("good data")];
+            let mut elements = vec![Element::ZERO; elements_len(&curve, &options)];
+            let mut records = vec![Record::ZERO; 50];
+            let report = solve(&curve, &options, &mut workspace, &mut elements, &mut records, &mut Silent)
+                .expect("good data");
+            assert_eq!(report.status, Status::Converged);
+            // Nothing but the directions in arc length moved: what they tell is the true curve's.
+            assert!(report.linearisations == 0 && report.iterations > 1, "{functional:?}: {report:?}");
+            let Report { variation, bending: energy, length, .. } = report;
+            let own =
+                if [Functional::MVC, Functional::SI_MVC].contains(&functional) { variation } else { energy };
+            let whole = own * length.powi(lengths) + options.tension * length + options.bending * energy;
+            let told = records[report.iterations - 1].value;
+            close(told, whole, 2e-3, &format!("{functional:?} with {tension} and {bending} at {scale:e}"));
+        }
+    }
+}
+
+#[test]
+fn a_closed_curve_with_obstacles_does_not_know_where_it_begins() {
+    let points = [[0.0, 0.0], [3.0, -0.5], [4.0, 2.0], [2.0, 4.0], [-0.5, 2.5]];
+    let given: Vec<Joint> = points.map(|[x, y]| Joint::at([x, y, 0.0])).to_vec();
+    let (_, free) = solve_curve(&given, true, &Options::DEFAULT).expect("good data");
+    // A little too near to a foot beside a joint: from there it lies in the last span, or in the first.
+    let beside = |element: usize, t: f64| {
+        let at = measure::at(&free, element, t).expect("a place");
+        [at.point[0] - 0.12 * at.tangent[1], at.point[1] + 0.12 * at.tangent[0], 0.0]
+    };
+    for place in [[1.2, -0.9, 0.0], [-0.4, 0.15, 0.0], [-0.75, 1.0, 0.0], beside(4, 0.97), beside(0, 0.03)] {
+        let mut first_value = None;
+        for first in 0..points.len() {
+            for backwards in [false, true] {
+                let mut joints = given.clone();
+                joints.rotate_left(first);
+                if backwards {
+                    joints.reverse();
+                }
+                let (side, sign) = if backwards { (Side::RIGHT, -1.0) } else { (Side::LEFT, 1.0) };
+                let obstacles = [Obstacle::point(place, 0.125, side)];
+                let curve = Curve::new(&joints, true).with_obstacles(&obstacles);
+                let (report, elements) = solved(&curve, &Options::DEFAULT);
+                assert_eq!(report.status, Status::Converged, "{place:?} from {first}");
+                assert!(
+                    (sign * to_the_left(&elements, place) - 0.125).abs() < 1e-9,
+                    "{place:?} from {first}"
+                );
+                // One element a span has several minima next to each other.
+                close(report.value, *first_value.get_or_insert(report.value), 3e-4, "the functional");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_lies_beyond_the_ends_of_an_open_curve_is_no_obstacle() {
+    let joints = woodford();
+    let (free, elements) = solve_curve(&joints, false, &Options::DEFAULT).expect("good data");
+    for (element, t, ahead) in [(5, 1.0, 0.1), (0, 0.0, -0.1)] {
+        let end = measure::at(&elements, element, t).expect("a place");
+        let place = add(end.point, times(end.tangent, ahead));
+        for side in [Side::LEFT, Side::RIGHT] {
+            let obstacles = [Obstacle::point(place, 0.5, side)];
+            let (report, _) = solved(&Curve::open(&joints).with_obstacles(&obstacles), &Options::DEFAULT);
+            assert_eq!((report.status, report.elements), (Status::Converged, 6), "{element} {side:?}");
+            assert_eq!(report.value, free.value);
+        }
+    }
+}
+
+#[test]
+fn left_of_a_curve_is_about_the_normal_whose_largest_coordinate_is_positive() {
+    let corner = [6.0, -6.0, 0.0];
+    let flat = [Obstacle::point(corner, 0.25, Side::LEFT)];
+    let (wanted, _) = solved(&Curve::open(&coving()).with_obstacles(&flat), &Options::DEFAULT);
+    for towards in [
+        [0.3, -0.4, 1.0],
+        [1.0, -0.6, 0.5],
+        [-0.7, 1.0, -0.2],
+        [0.3, 0.4, -1.0],
+        [-1.0, 0.6, 0.5],
+        [0.7, -1.0, 0.2],
+    ] {
+        let normal = unit(towards);
+        let first = unit(cross([0.1, 0.2, 1.0], normal));
+        let axes = [first, cross(normal, first)];
+        let turned = |[x, y, _]: [f64; 3]| add(times(axes[0], x), times(axes[1], y));
+        // About `normal` it lies to the left; where that points the other way, to the right.
+        let largest = normal.into_iter().fold(0.0_f64, |most, x| if x.abs() > most.abs() { x } else { most });
+        let side = if largest > 0.0 { Side::LEFT } else { Side::RIGHT };
+        let joints = coving().map(|joint| {
+            let tangent = turned(joint.tangent[0].value);
+            Joint::at(turned(joint.position.value)).with_tangent(Quantity::fixed(tangent))
+        });
+        let obstacles = [Obstacle::point(turned(corner), 0.25, side)];
+        let (report, elements) = solved(&Curve::open(&joints).with_obstacles(&obstacles), &Options::DEFAULT);
+        assert_eq!((report.status, report.elements), (wanted.status, wanted.elements), "{towards:?}");
+        close(report.value, wanted.value, 1e-9, "the functional");
+        let found = measure::plane_normal(&elements).expect("planar");
+        assert!(distance(found, times(normal, largest.signum())) < 1e-12, "{towards:?}: {found:?}");
+    }
+}
+
+#[test]
+fn a_curvature_of_given_size_bends_the_way_of_the_curve_to_either_side() {
+    // The value runs along the tangent: it says nothing of the side.
+    let size = Quantity::of_size([0.0, 0.25, 0.0]);
+    let mut values = Vec::new();
+    for side in [1.0, -1.0] {
+        let joints = [
+            Joint::at([0.0; 3]).with_tangent(Quantity::fixed([0.0, 1.0, 0.0])).with_curvature(size),
+            Joint::at([side, 2.0, 0.0]),
+            Joint::at([side * 2.5, 3.0, 0.0]),
+        ];
+        let (report, elements) = solve_curve(&joints, false, &Options::DEFAULT).expect("good data");
+        assert_eq!(report.status, Status::Converged);
+        let bend = measure::at(&elements, 0, 0.0).expect("a place").curvature;
+        assert!(distance(bend, [side * 0.25, 0.0, 0.0]) < 1e-12, "{bend:?}");
+        values.push(report.value);
+    }
+    close(values[0], values[1], 1e-12, "mirrored");
+}
+
+#[test]
+fn what_an_observer_is_told_is_in_the_callers_unit() {
+    let run = |scale: f64, functional| {
+        let joints = woodford().into_iter().map(|joint| Joint::at(joint.position.value.map(|x| scale * x)));
+        let joints: Vec<Joint> = joints.collect();
+        let curve = Curve::open(&joints);
+        // Two elements a span: after the directions in arc length, steps of the elements are needed.
+        let options = Options { functional, elements_per_span: 2, ..Options::DEFAULT };
+        let mut workspace = vec![f64::NAN; workspace_len(&curve, &options).expect("good data")];
+        let mut elements = vec![Element::ZERO; elements_len(&curve, &options)];
+        let mut records = vec![Record::ZERO; 60];
+        let report = solve(&curve, &options, &mut workspace, &mut elements, &mut records, &mut Silent);
+        records.truncate(report.expect("good data").iterations);
+        records
+    };
+    // Units are powers of two: the same bits.
+    for (functional, power) in [(Functional::MVC, 3), (Functional::MEC, 1), (Functional::SI_MVC, 0)] {
+        let plain = run(1.0, functional);
+        assert!(plain.iter().any(|record| record.predicted > 0.0 && record.gradient > 0.0));
+        for scale in [8.0_f64, 1.0 / 64.0] {
+            let unit = scale.powi(-power);
+            let scaled = run(scale, functional);
+            assert_eq!(scaled.len(), plain.len());
+            for (a, b) in plain.iter().zip(&scaled) {
+                let told = [a.value, a.predicted, a.actual, a.gradient].map(|x| x * unit);
+                assert_eq!([b.value, b.predicted, b.actual, b.gradient], told, "{functional:?} {scale}");
+                assert_eq!([b.step, b.shift], [a.step, a.shift], "{functional:?} {scale}");
+            }
+        }
+    }
+}
+
+#[test]
+fn an_update_does_not_look_at_a_tolerance() {
+    let joints = woodford();
+    let options = Options { elements_per_span: 4, ..Options::DEFAULT };
+    let (_, start) = solve_curve(&joints, false, &options).expect("good data");
+    let mut moved = joints;
+    moved[3].position.value[1] += 0.05;
+    let curve = Curve::open(&moved);
+    let [plain, tolerant] = [0.0, 1e-2].map(|tolerance| {
+        let options = Options { tolerance, ..options };
+        let mut workspace = vec![f64::NAN; workspace_len(&curve, &options).expect("good data")];
+        let mut elements = start.clone();
+        let report = update(&curve, &options, &mut workspace, &mut elements, &mut [], &mut Silent);
+        (report.expect("good data"), elements)
+    });
+    assert_eq!(plain, tolerant);
 }

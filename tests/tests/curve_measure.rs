@@ -625,3 +625,24 @@ fn what_cannot_be_measured_is_refused_by_name() {
     assert!(room.0.iter().all(|point| *point == [7.0; 3]) && room.1.iter().all(|&knot| knot == 7.0));
     assert_eq!(bspline(&good, &mut room.0, &mut room.1), Ok(()));
 }
+
+#[test]
+fn a_straight_element_has_neither_curvature_nor_torsion() {
+    let straight = |direction: [f64; 3]| {
+        let row = |by: f64| direction.map(|x| x * by);
+        // Faster and slower along the way, on a line all the same.
+        Element { rows: [row(0.0), row(1.0), row(0.5), row(-0.25), row(1.5), row(1.0)] }
+    };
+    for direction in [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [1.0, -2.0, 2.0]] {
+        let elements = [straight(direction)];
+        for t in [0.0, 0.3, 1.0] {
+            let found = at(&elements, 0, t).expect("on the line");
+            assert!(distance(found.tangent, unit(direction)) < 1e-14);
+            assert!(norm(found.curvature) < 1e-14 && found.signed_curvature.abs() < 1e-14, "{found:?}");
+            assert!(found.torsion.is_finite() && found.curvature_derivative.is_finite(), "{found:?}");
+            if direction[0] * direction[1] == 0.0 {
+                assert_eq!((found.torsion, found.curvature_derivative), (0.0, 0.0));
+            }
+        }
+    }
+}

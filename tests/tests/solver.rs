@@ -609,13 +609,15 @@ fn a_shuffled_chain_is_put_in_order() {
                 }
             }
         }
-        // The formula is sharp: one entry less is not enough, and the error says so.
-        let problem = Shuffled::new(count, dofs, false, bound - 1, 3);
-        let given = workspace_len(&problem, 1);
-        let mut state = vec![0.0; n];
-        let mut workspace = vec![f64::NAN; given];
-        let result = minimise(&problem, &far, &InOrder, &mut state, &mut workspace, &mut [], &mut Silent);
-        assert_eq!(result, Err(WorkspaceTooSmall { needed: given + 2, given }));
+        // The formula is sharp: an entry less is not enough, and the error says how many are missing.
+        for missing in [1, 2, bound] {
+            let problem = Shuffled::new(count, dofs, false, bound - missing, 3);
+            let given = workspace_len(&problem, InOrder.width());
+            let mut state = vec![0.0; n];
+            let mut workspace = vec![f64::NAN; given];
+            let result = minimise(&problem, &far, &InOrder, &mut state, &mut workspace, &mut [], &mut Silent);
+            assert_eq!(result, Err(WorkspaceTooSmall { needed: given + 2 * missing, given }));
+        }
     }
 }
 
@@ -902,4 +904,18 @@ fn a_shape_that_runs_away_is_unbounded() {
     let outcome = run(&Away, &Settings::DEFAULT, &InOrder, &mut state);
     assert_eq!(outcome.status, Status::Unbounded);
     assert!(state[0] > 1e4);
+}
+
+#[test]
+fn every_status_has_a_name_and_a_sentence_of_its_own() {
+    use Status::{Cancelled, Converged, IterationLimit, Stalled, Unbounded, Unsolved};
+    let all = [Unsolved, Converged, Stalled, IterationLimit, Unbounded, Cancelled];
+    for (k, status) in all.into_iter().enumerate() {
+        assert_eq!(status as usize, k);
+        assert!(status.sentence().len() > 10 && status.sentence().is_ascii());
+        assert!(!status.name().is_empty() && status.name() == status.name().to_lowercase());
+        for other in &all[..k] {
+            assert!(status.sentence() != other.sentence() && status.name() != other.name());
+        }
+    }
 }

@@ -16,17 +16,17 @@ enum Severity {
 
 /// What is wrong, with the lines of the file that show it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Fault {
+pub struct Fault {
     /// How bad it is.
     severity: Severity,
     /// One sentence naming the culprit.
-    pub(crate) message: String,
+    pub message: String,
     /// The line, from 1.
-    pub(crate) line: usize,
+    pub line: usize,
     /// The column in characters, from 1.
-    pub(crate) column: usize,
+    pub column: usize,
     /// What to do about it.
-    pub(crate) help: Option<String>,
+    pub help: Option<String>,
     here: Excerpt,
     earlier: Option<(Excerpt, &'static str)>,
 }
@@ -67,7 +67,7 @@ impl Fault {
     }
 
     /// The message with its lines, as a compiler would print it. With colours only if asked for.
-    pub(crate) fn render(&self, file: &str, colours: bool) -> String {
+    pub fn render(&self, file: &str, colours: bool) -> String {
         let level = match self.severity {
             Severity::Error => Level::ERROR,
             Severity::Warning => Level::WARNING,

@@ -551,4 +551,72 @@ mod tests {
         assert_eq!(high.range(), (f64::NEG_INFINITY, f64::INFINITY));
         assert!(Bernstein::from_slice(&[]).is_none() && Bernstein::from_slice(&[0.0; 33]).is_none());
     }
+
+    #[test]
+    fn opposite_signs_are_told_where_the_product_underflows() {
+        for a in [1.0, 1e-200, f64::INFINITY] {
+            for b in [1.0, 1e-200, f64::INFINITY] {
+                assert!(opposite(a, -b) && opposite(-a, b), "{a} {b}");
+                assert!(!opposite(a, b) && !opposite(-a, -b), "{a} {b}");
+            }
+            for none in [0.0, -0.0, f64::NAN] {
+                assert!(
+                    !opposite(a, none) && !opposite(-a, none) && !opposite(none, a) && !opposite(none, -a)
+                );
+            }
+        }
+    }
+
+    /// Coefficients are certain, positive or negative, or noise, which may be either: one change of sign is certain
+    /// exactly where all choices have one.
+    #[test]
+    fn one_change_of_sign_is_certain_where_noise_cannot_make_it_three_or_none() {
+        let noise = 1e-3;
+        for count in 1..=6_usize {
+            for code in 0..3_usize.pow(count as u32) {
+                let signs: [i32; 6] = core::array::from_fn(|k| (code / 3_usize.pow(k as u32) % 3) as i32 - 1);
+                let value = |k: usize| if signs[k] == 0 { noise } else { 2.0 * noise * f64::from(signs[k]) };
+                let coefficients: [f64; 6] = core::array::from_fn(value);
+                let polynomial = Bernstein::from_slice(&coefficients[..count]).expect("a few coefficients");
+                let always_once = (0..1_u32 << count).all(|choice| {
+                    let sign = |k: usize| match signs[k] {
+                        0 => choice >> k & 1 == 1,
+                        sign => sign > 0,
+                    };
+                    (1..count).filter(|&k| sign(k) != sign(k - 1)).count() == 1
+                });
+                assert_eq!(polynomial.crosses_once(noise), always_once, "{:?}", &signs[..count]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_crossing_stays_between_its_ends_where_tangents_lead_away() {
+        // (t − r) ((t − m)² + w): with a small w a tangent near m meets zero far outside.
+        for r in [0.05, 0.2, 0.35, 0.6, 0.9] {
+            for m in [0.45, 0.5, 0.55, 0.7] {
+                for w in [1e-4, 1e-2, 0.1] {
+                    for factor in [1.0, -3.0] {
+                        let hill = Bernstein::new([m * m + w, m * m - m + w, (1.0 - m) * (1.0 - m) + w]);
+                        let cubic = Bernstein::new([-r, 1.0 - r]) * hill * factor;
+                        let found = cubic.crossing(&cubic.derivative(), 0.0, 1.0);
+                        assert!((found - r).abs() < 1e-10, "{r} {m} {w}: {found}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_crossing_is_found_where_newtons_method_creeps() {
+        // t³¹ = c: from the middle every tangent goes but a part of 31 of the way down.
+        for exponent in [60.0, 90.0, 150.0] {
+            let c = libm::pow(10.0, -exponent);
+            let mut coefficients = [-c; CAPACITY];
+            coefficients[MAX_DEGREE] = 1.0 - c;
+            let power = Bernstein::new(coefficients);
+            let (found, root) = (power.crossing(&power.derivative(), 0.0, 1.0), libm::pow(c, 1.0 / 31.0));
+            assert!((found / root - 1.0).abs() < 1e-9, "{found} {root}");
+        }
+    }
 }

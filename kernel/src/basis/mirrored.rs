@@ -100,3 +100,63 @@ pub(crate) fn pairs(points: usize) -> &'static [Pairs] {
 pub(crate) const fn pair_count(points: usize) -> usize {
     points.div_ceil(2)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Six rows of no symmetry, in the coordinates of the pairs.
+    const ROWS: [f64; 6] = [0.25, -1.0, 1.5, 2.0, -0.75, 3.5];
+
+    fn coordinates() -> [f64; COORDINATES] {
+        let [p0, v0, a0, a1, v1, p1] = ROWS;
+        [p1 - p0, v0 + v1, a0 - a1, v0 - v1, a0 + a1]
+    }
+
+    #[test]
+    fn pairs_are_the_points_of_the_rule_and_weigh_as_much() {
+        for points in LEAST_POINTS..=MAX_POINTS {
+            let rule = lobatto(points).expect("a rule");
+            let found = pairs(points);
+            assert_eq!(pair_count(points), points.div_ceil(2));
+            let lanes = found.iter().flat_map(|chunk| (0..WIDTH).map(move |lane| (chunk, lane)));
+            let mut weight = 0.0;
+            for (pair, (chunk, lane)) in lanes.clone().enumerate() {
+                if pair >= pair_count(points) {
+                    assert_eq!(chunk.weight.0[lane], 0.0, "what pads weighs nothing");
+                    // It is at an ordinary place: nothing divides by zero there.
+                    assert!(chunk.by.iter().flatten().all(|x| x.0[lane].is_finite()));
+                    assert!(chunk.by[0][0].0[lane] > 0.5, "{points}");
+                    continue;
+                }
+                weight += 2.0 * chunk.weight.0[lane];
+                let alone = 2 * pair + 1 == points;
+                let whole = if alone { 2.0 * chunk.weight.0[lane] } else { chunk.weight.0[lane] };
+                assert_eq!(whole, rule.weights[pair], "{points} {pair}");
+                let (here, there) =
+                    (hermite::basis(rule.nodes[pair]), hermite::basis(1.0 - rule.nodes[pair]));
+                for k in 0..3 {
+                    let sum = |of: [f64; 6]| of.iter().zip(ROWS).map(|(h, row)| h * row).sum::<f64>();
+                    let part = |from: usize, to: usize| {
+                        (from..to).map(|a| chunk.by[k][a].0[lane] * coordinates()[a]).sum::<f64>()
+                    };
+                    let (even, odd) = (part(0, EVEN), part(EVEN, COORDINATES));
+                    let mirrored = if k == 1 { odd - even } else { even - odd };
+                    assert!((even + odd - sum(here[k + 1])).abs() < 1e-11, "{points} {pair} {k}");
+                    assert!((mirrored - sum(there[k + 1])).abs() < 1e-11, "{points} {pair} {k}");
+                }
+            }
+            assert!((weight - 1.0).abs() < 1e-14, "{points}: {weight}");
+            assert!(lanes.count() < pair_count(points) + WIDTH);
+        }
+    }
+
+    #[test]
+    fn a_rule_that_is_not_tabulated_gives_the_nearest() {
+        for (asked, nearest) in
+            [(0, LEAST_POINTS), (LEAST_POINTS - 1, LEAST_POINTS), (MAX_POINTS + 9, MAX_POINTS)]
+        {
+            assert!(core::ptr::eq(pairs(asked), pairs(nearest)), "{asked}");
+        }
+    }
+}

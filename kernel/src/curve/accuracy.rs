@@ -12,7 +12,7 @@
 use super::fairness::{Density, Shape};
 use super::model::{Division, Model};
 use super::natural::TrueCurve;
-use super::passes::Passes;
+use super::passes::{Passes, total};
 use super::rows::place;
 use super::start::refine;
 use crate::order::Order;
@@ -168,7 +168,7 @@ where
     }
 }
 
-/// Divides spans until elements along the true curve are nearer to it than the tolerance.
+/// Divides spans until elements along the true curve are nearer to it than the tolerance, and as long as they are to be.
 #[expect(clippy::too_many_arguments, reason = "a curve, its true form, what it is to become, and memory")]
 pub(super) fn divide_true<const D: usize>(
     passes: &mut Passes<'_>,
@@ -197,17 +197,20 @@ where
         fine.guarded = false;
         let mut outcome = passes.look(&fine, state, work)?;
         curve.distances(coarse, coarse_state, &fine, counts, state, errors);
+        let most = errors.iter().fold(0.0f64, |most, &error| if error > most { error } else { most });
+        // Where a given length is not met, the worst spans are not near enough either.
+        let met = passes.length_is_met(|| total(&fine, state)[1]);
+        let enough = if met { aim.tolerance } else { aim.tolerance.smaller(most / HALVING) };
         let mut divided = false;
         for (count, &error) in counts.iter_mut().zip(errors.iter()) {
-            if !(error <= aim.tolerance) && 2.0 * *count <= aim.most_per_span as f64 {
+            if !(error <= enough) && 2.0 * *count <= aim.most_per_span as f64 {
                 *count *= 2.0;
                 divided = true;
             }
         }
         if !divided {
-            let error = errors.iter().fold(0.0f64, |most, &error| if error > most { error } else { most });
-            outcome.status = if error <= aim.tolerance { Status::Converged } else { Status::Stalled };
-            return Ok(Divided { outcome, error });
+            outcome.status = if met && most <= aim.tolerance { Status::Converged } else { Status::Stalled };
+            return Ok(Divided { outcome, error: most });
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::order::Order;
 use crate::root::sqrt;
 use nalgebra::Vector3;
 
-/// Below this fraction of the data's extent two points are the same.
+/// Below this fraction of the data's extent two points are the same, and a circle of such a radius is a point.
 const COINCIDENT: f64 = 1e-12;
 /// The largest distance from the first joint: beyond it products overflow.
 const LARGEST_EXTENT: f64 = 1e100;
@@ -126,7 +126,11 @@ pub(super) fn check(curve: &Curve<'_>) -> Result<f64, CurveError> {
         }
         before = Some((joint, here));
     }
-    if !(1e-90..=1e90).contains(&longest) {
+    let curvatures = curve.joints.iter().flat_map(|joint| &joint.curvature);
+    let given =
+        curvatures.filter(|curvature| curvature.given != Given::FREE).flat_map(|curvature| curvature.value);
+    let sharpest = given.fold(0.0f64, |most, x| most.larger(x.abs()));
+    if !(1e-90..=1e90).contains(&longest) || sharpest * longest > 1.0 / COINCIDENT {
         return Err(CurveError::SizeOutOfRange);
     }
     let (_, exponent) = libm::frexp(longest);

@@ -38,7 +38,7 @@ pub fn bspline_len(elements: &[Element]) -> (usize, usize) {
 ///
 /// # Errors
 /// [`MeasureError::NoElements`], [`MeasureError::NotFinite`], [`MeasureError::Irregular`] where an element starts or
-/// ends without speed, [`MeasureError::TooShort`].
+/// ends without speed, or with so much less than its neighbour that two knots coincide, [`MeasureError::TooShort`].
 pub fn bspline(
     elements: &[Element],
     controls: &mut [[f64; 3]],
@@ -63,11 +63,23 @@ pub fn bspline(
         }
     };
     // The interval of an element relative to the first's: speed over interval is the same on both sides of a joint.
+    let after = |interval: f64, element: usize| Ok(interval * (speed(element, 1)? / speed(element - 1, 4)?));
     let mut interval = 1.0;
     let mut total = 1.0;
     for element in 1..elements.len() {
-        interval *= speed(element, 1)? / speed(element - 1, 4)?;
+        interval = after(interval, element)?;
         total += interval;
+    }
+    // Speeds that differ beyond measure put two joints at one knot.
+    let (mut interval, mut sum, mut before) = (1.0, 0.0, 0.0);
+    for element in 1..elements.len() {
+        sum += interval;
+        let knot = sum / total;
+        if !(before < knot && knot < 1.0) {
+            return Err(MeasureError::Irregular { element });
+        }
+        before = knot;
+        interval = after(interval, element)?;
     }
     let mut control_at = 0;
     let mut knot_at = 0;
@@ -81,7 +93,7 @@ pub fn bspline(
     let (mut interval, mut sum) = (1.0, 0.0);
     for (index, element) in elements.iter().enumerate() {
         if index > 0 {
-            interval *= speed(index, 1)? / speed(index - 1, 4)?;
+            interval = after(interval, index)?;
         }
         sum += interval;
         let bezier = element.bezier();

@@ -117,19 +117,22 @@ impl<const D: usize> End<D> {
             Coordinate::Along(_) | Coordinate::Torsion => [zero; 3],
             Coordinate::Across(j) => [self.normal(j), zero, zero],
             Coordinate::Roll(centre) => {
-                let [_, first, second] = self.tangent_map(Coordinate::Tangent(0));
+                let [_, first, second] = self.turn_map(0);
                 [tangent * centre, first, second]
             }
-            Coordinate::Tangent(j) => {
-                let normal = self.normal(j);
-                let bend = normal * self.stretch - tangent * (speed * speed * self.curvature.at(j));
-                [zero, normal * speed, bend]
-            }
+            Coordinate::Tangent(j) => self.turn_map(j),
             Coordinate::Curvature(j) => [zero, zero, self.normal(j) * (speed * speed)],
             Coordinate::Turn => [zero, zero, self.turned() * (speed * speed)],
             Coordinate::Speed => [zero, tangent, self.curvature_vector() * (2.0 * speed)],
             Coordinate::Stretch => [zero, zero, tangent],
         }
+    }
+
+    /// The derivatives by the tangent's turn towards a normal.
+    fn turn_map(&self, j: usize) -> [SVector<f64, D>; 3] {
+        let (normal, speed) = (self.normal(j), self.speed);
+        let bend = normal * self.stretch - self.frame[0] * (speed * speed * self.curvature.at(j));
+        [SVector::zeros(), normal * speed, bend]
     }
 
     /// The second derivative by two coordinates of `point·P + first·P' + second·P''`.
@@ -144,21 +147,13 @@ impl<const D: usize> End<D> {
         second: &SVector<f64, D>,
     ) -> f64 {
         use Coordinate::{Curvature, Point, Roll, Speed, Stretch, Tangent, Turn};
+        // Rolling turns the tangent, while the point runs on a circle about the centre.
+        let rolls = if let (Roll(centre), Roll(_)) = (one, other) { Some(centre) } else { None };
         let turns = |coordinate| if let Roll(_) = coordinate { Tangent(0) } else { coordinate };
-        match (one, other) {
-            (Roll(centre), Roll(_)) => {
-                // The point runs on a circle about the centre.
-                let turned = self.second_map(Tangent(0), Tangent(0), point, first, second);
-                return turned + centre * point.dot(&self.frame[D - 1]);
-            }
-            (Roll(_), _) | (_, Roll(_)) => {
-                return self.second_map(turns(one), turns(other), point, first, second);
-            }
-            _ => {}
-        }
+        let (one, other) = (turns(one), turns(other));
         let (tangent, speed) = (self.frame[0], self.speed);
         let (normal, curvature) = (|j: usize| self.normal(j), |j: usize| self.curvature.at(j));
-        match (one, other) {
+        let derivative = match (one, other) {
             (Point(i), Point(j)) => {
                 let along = |d: usize| tangent.as_slice().at(d);
                 along(i) * along(j) * point.dot(&self.curvature_vector())
@@ -187,7 +182,8 @@ impl<const D: usize> End<D> {
             }
             (Turn, Turn) => -speed * speed * second.dot(&self.curvature_vector()),
             _ => 0.0,
-        }
+        };
+        rolls.map_or(derivative, |centre| derivative + centre * point.dot(&self.frame[D - 1]))
     }
 }
 

@@ -174,7 +174,8 @@ pub enum CurveError {
     },
     /// Fewer than two joints have a position.
     NoPosition,
-    /// The data are too large or too small for the arithmetic: lengths from 1e-90 to 1e90 are allowed.
+    /// The data are too large or too small for the arithmetic: lengths from 1e-90 to 1e90 are allowed, and radii of curvature
+    /// from 1e-12 of the longest step between joints on.
     SizeOutOfRange,
     /// The data do not lie in a plane though the options ask for a planar curve.
     NotPlanar,
@@ -269,7 +270,10 @@ impl fmt::Display for CurveError {
             }
             Self::NoPosition => f.write_str("fewer than two joints have a position"),
             Self::SizeOutOfRange => {
-                f.write_str("the data are too large or too small: lengths must be from 1e-90 to 1e90")
+                f.write_str(
+                    "the data are too large or too small: lengths must be from 1e-90 to 1e90, radii of curvature at least \
+                     1e-12 of the longest step",
+                )
             }
             Self::NotPlanar => f.write_str("a planar curve was asked for but the data do not lie in a plane"),
             Self::BadOption(option) => write!(f, "option {}", option.rule()),

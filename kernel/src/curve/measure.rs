@@ -96,7 +96,10 @@ pub struct CurvePoint {
     pub torsion: f64,
 }
 
-/// A power of two near the largest first derivative of an element; 0 if all rows are.
+/// The least exponent of an element's unit: what is divided by it, and its square, are numbers still.
+const LEAST_EXPONENT: i32 = -500;
+
+/// A power of two near the largest derivative of an element, or larger if that is next to nothing; 0 if all rows are.
 fn size_of(element: &Element) -> f64 {
     let mut most = 0.0f64;
     for row in &element.rows[1..5] {
@@ -111,7 +114,7 @@ fn size_of(element: &Element) -> f64 {
         return most;
     }
     let (_, exponent) = libm::frexp(most);
-    libm::scalbn(1.0, exponent)
+    libm::scalbn(1.0, exponent.max(LEAST_EXPONENT))
 }
 
 /// The rows of an element relative to its first point, in a unit in which they are near one, and that unit.
@@ -157,39 +160,35 @@ pub fn plane_normal(elements: &[Element]) -> Option<[f64; 3]> {
     let first = elements.first()?;
     let origin = Vector3::from(first.rows[0]);
     // Every vector that must lie in the plane, each with the size against which it is small.
-    let each = |visit: &mut dyn FnMut(Vector3<f64>)| {
-        for element in elements {
-            for (a, row) in element.rows.iter().enumerate() {
-                let row = Vector3::from(*row);
-                visit(if a == 0 || a == 5 { row - origin } else { row });
-            }
-        }
+    let vectors = || {
+        elements.iter().flat_map(|element| element.rows.iter().enumerate()).map(|(a, row)| {
+            let row = Vector3::from(*row);
+            if a == 0 || a == 5 { row - origin } else { row }
+        })
     };
     for (across, normal) in [(2, [0.0, 0.0, 1.0]), (0, [1.0, 0.0, 0.0]), (1, [0.0, 1.0, 0.0])] {
-        let mut flat = true;
-        each(&mut |vector| flat &= vector.as_slice().at(across) == 0.0);
-        if flat {
+        if vectors().all(|vector| vector.as_slice().at(across) == 0.0) {
             return Some(normal);
         }
     }
     let mut extent = 0.0f64;
     let mut longest = Vector3::zeros();
-    each(&mut |vector| {
+    for vector in vectors() {
         if vector.amax() > extent {
             extent = vector.amax();
             longest = vector;
         }
-    });
+    }
     let along = longest / extent;
     let along = along / sqrt(along.dot(&along));
     let mut off = Vector3::zeros();
-    each(&mut |vector| {
+    for vector in vectors() {
         let vector = vector / extent;
         let beside = vector - along * vector.dot(&along);
         if beside.amax() > off.amax() {
             off = beside;
         }
-    });
+    }
     if !(off.amax() > PLANAR) {
         let least = (0..3).fold(0, |least, d| if along[d].abs() < along[least].abs() { d } else { least });
         off = Vector3::from_fn(|d, _| if d == least { 1.0 } else { 0.0 });
@@ -201,9 +200,7 @@ pub fn plane_normal(elements: &[Element]) -> Option<[f64; 3]> {
     if normal[largest] < 0.0 {
         normal = -normal;
     }
-    let mut flat = true;
-    each(&mut |vector| flat &= (vector / extent).dot(&normal).abs() <= PLANAR);
-    flat.then_some(normal.into())
+    vectors().all(|vector| (vector / extent).dot(&normal).abs() <= PLANAR).then_some(normal.into())
 }
 
 /// How far from a plane a chain may lie that counts as planar, as a fraction of its extent.

@@ -72,6 +72,7 @@ pub use measure::{CurvePoint, MeasureError};
 pub use minima::{minima, minima_as};
 pub use obstacle::{Obstacle, Side};
 pub use options::Options;
+pub use passes::LENGTH_TRUSTED;
 pub use region::Region;
 pub use report::{FARTHEST, Report, SHOWN_GROWTH, TRUSTED};
 pub use solve::{elements_len, solve, update, workspace_len};

@@ -18,7 +18,8 @@ pub struct Options {
     /// Elements between two joints, 1 to 1024 (thesis 4.6). One is normally enough to be fair, more approach the
     /// true curve. Default 1.
     pub elements_per_span: u32,
-    /// The length of the curve; 0 leaves it free. Default 0.
+    /// The length of the curve, which a converged one has to a millionth ([`super::LENGTH_TRUSTED`]); 0 leaves it free.
+    /// Default 0.
     pub length: f64,
     /// How far the curve may be from the true minimum, a length: spans are divided further until an estimate is below it,
     /// into at most `elements_per_span` elements each. 0 takes just `elements_per_span`. Default 0.
@@ -36,10 +37,11 @@ pub struct Options {
     /// starts. It leads to the minimum of shortest length where start values alone lead elsewhere. At most 16. Default 0.
     pub continuation: u32,
     /// The curve has converged when a Newton step promises to lower the functional by less than this fraction, or when
-    /// 20 iterations together lowered it by less than a thousand times that; up to two more steps polish it. Above
+    /// 20 iterations together lowered it by less than a thousand times that; up to two more steps polish it. Of a
+    /// functional that vanishes: this fraction of a thousandth of what a bend by a radian on every chord costs. Above
     /// 1e-9 it has, too, when no step as long as an element's speed promises more, though the Hessian is not positive
-    /// definite; and no other minima of single elements are looked for. 0 asks for
-    /// as much as the arithmetic gives. Default 1e-12.
+    /// definite; and no other minima of single elements are looked for. 0 asks for as much as the arithmetic gives.
+    /// Default 1e-12.
     pub relative_decrease: f64,
 }
 

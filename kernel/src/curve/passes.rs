@@ -48,6 +48,8 @@ const SHORT: f64 = 1e-4;
 const STIFF_PENALTY: f64 = 1e8;
 /// A length is met to this fraction.
 const LENGTH_MET: f64 = 1e-10;
+/// How far the length of a converged curve may be from the one that was asked for, as a fraction of that.
+pub const LENGTH_TRUSTED: f64 = 1e-6;
 /// Torsion is continuous to this fraction.
 const TORSION_MET: f64 = 1e-9;
 /// More corrections of the torsions' multipliers than are needed: each makes the jumps a hundred times smaller.
@@ -180,8 +182,9 @@ impl<'a> Passes<'a> {
         model.points = points;
         let sums = guard(model, state);
         let value = model.couple(sums).value;
-        let agrees =
-            (value - outcome.value).abs() <= relative_decrease * (value + 1e-9 * model.natural_cost());
+        let agrees = (value - outcome.value).abs()
+            <= relative_decrease * (value + 1e-9 * model.natural_cost())
+            && self.length_is_met(|| sums[1]);
         let stopped = matches!(outcome.status, Status::Cancelled | Status::Unbounded);
         if stopped || (relative_decrease > LOOSE && agrees && !holds) {
             return Ok(Outcome { value, ..outcome });
@@ -389,7 +392,8 @@ impl<'a> Passes<'a> {
             linearisations: 0,
             value,
             gradient: f64::INFINITY,
-            decrement: excess / sums[0] * value,
+            // Of a line that exceeds nothing there is no share.
+            decrement: if sums[0] > 0.0 { excess / sums[0] * value } else { 0.0 },
         })
     }
 
@@ -413,6 +417,11 @@ impl<'a> Passes<'a> {
         let outcome = solve::minimise(model, &settings, &InOrder, state, work, &mut [], self)?;
         self.linearisations += outcome.linearisations;
         Ok(outcome)
+    }
+
+    /// Whether a length is the one that is asked for; it is not looked at if none is.
+    pub(super) fn length_is_met(&self, length: impl FnOnce() -> f64) -> bool {
+        self.length.is_none_or(|target| (length() - target).abs() <= LENGTH_TRUSTED * target)
     }
 
     /// One pass, with what is left of the iterations and so many relaxations at first and between steps.
@@ -476,7 +485,7 @@ where
 }
 
 /// The integral of which the functional is made, without multipliers, and the length.
-fn total<const D: usize>(model: &Model<'_, D>, state: &[f64]) -> [f64; 2]
+pub(super) fn total<const D: usize>(model: &Model<'_, D>, state: &[f64]) -> [f64; 2]
 where
     Shape<D>: Density<D>,
 {

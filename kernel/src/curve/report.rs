@@ -13,7 +13,8 @@ use crate::root::sqrt;
 use crate::solve::{Outcome, Problem, Status};
 use crate::total::Total;
 
-/// How a curve came out. All figures in the caller's units.
+/// How a curve came out. All figures in the caller's units; of a shape that has grown beyond the arithmetic they are
+/// infinite, none is NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
     /// How the computation ended.
@@ -36,7 +37,7 @@ pub struct Report {
     /// that wherever they do not settle it; to 1e-6. A converged curve's differs from `value` by no more than [`TRUSTED`]
     /// of it; where by much more than rounding, the curve is wild for its elements: take more of them.
     pub fine_value: f64,
-    /// The length `L`.
+    /// The length `L`. A converged curve's is the one that was asked for, to [`super::LENGTH_TRUSTED`].
     pub length: f64,
     /// The variation of curvature `V = ∫ (dκ/ds)² ds`.
     pub variation: f64,
@@ -110,8 +111,9 @@ where
         let natural = model.natural_cost() * functional_scale(options, model.place.unit);
         let trusted =
             (report.fine_value - report.value).abs() <= TRUSTED * (report.value + NOTHING * natural);
+        let long = passes.length_is_met(|| figures.length);
         let grown = growth > SUSPECT_GROWTH;
-        if !(regular && trusted) {
+        if !(regular && trusted && long) {
             // What was minimised is not what the elements are: no minimum was found.
             report.status = if grown { lost } else { Status::Stalled };
         } else if growth > FARTHEST
@@ -229,6 +231,7 @@ where
     } else {
         fine_value
     };
+    let known = |figure: f64| if figure.is_nan() { f64::INFINITY } else { figure };
     Report {
         status: outcome.status,
         iterations: outcome.iterations,
@@ -237,12 +240,12 @@ where
         planar: D == 2,
         elements: elements.len(),
         error: 0.0,
-        value: outcome.value * scale,
-        fine_value,
-        length,
-        variation,
-        bending,
-        gradient: outcome.gradient / outcome.value.larger(f64::MIN_POSITIVE),
-        decrement: outcome.decrement * scale,
+        value: known(outcome.value * scale),
+        fine_value: known(fine_value),
+        length: known(length),
+        variation: known(variation),
+        bending: known(bending),
+        gradient: known(outcome.gradient / outcome.value.larger(f64::MIN_POSITIVE)),
+        decrement: known(outcome.decrement * scale),
     }
 }

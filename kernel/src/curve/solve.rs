@@ -170,7 +170,11 @@ pub(super) fn begin(
     }
 }
 
-fn model<'a, const D: usize>(curve: &Curve<'a>, options: &Options, place: &Placement<D>) -> Model<'a, D> {
+pub(super) fn model<'a, const D: usize>(
+    curve: &Curve<'a>,
+    options: &Options,
+    place: &Placement<D>,
+) -> Model<'a, D> {
     // The functional is brought to the local unit as a whole: its terms scale with different powers of the length.
     let square = place.unit * place.unit;
     let space = if D == 3 { Space::of(options.functional) } else { None };

@@ -250,3 +250,33 @@ impl Space {
             Tie { slope: -twice * off, second: twice, mixed: slope.map(|row| row.map(|x| -twice * x)) };
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_typical_curvature_is_the_mean_one_and_at_least_one_over_the_length() {
+        let Some(mut space) = Space::of(Functional::SPACE_MVC) else { panic!("a functional with torsion") };
+        for (bending, length, wanted) in [(8.0, 2.0, 2.0), (1e-6, 4.0, 0.25), (0.0, 0.5, 2.0)] {
+            space.take_scale(bending, length);
+            assert!((space.scale() - wanted).abs() < 1e-15, "{bending} {length}: {}", space.scale());
+            assert!(space.bends(INFLECTION * SOFTENING * wanted * 1.001));
+            assert!(!space.bends(INFLECTION * SOFTENING * wanted * 0.999));
+        }
+    }
+
+    /// Of `(t, t², 0)`, which bends least at its end, at any size.
+    #[test]
+    fn the_least_curvature_is_found_at_any_size() {
+        let Some(space) = Space::of(Functional::SPACE_MEC) else { panic!("a functional with torsion") };
+        for size in [1.0, 1e-3, 1e6] {
+            let row = |x: f64, y: f64| SVector::from([size * x, size * y, 0.0]);
+            let rows =
+                [row(0.0, 0.0), row(1.0, 0.0), row(0.0, 2.0), row(0.0, 2.0), row(1.0, 2.0), row(1.0, 1.0)];
+            let found = space.least_curvature(&rows) * size;
+            let wanted = 2.0 / (5.0 * sqrt(5.0));
+            assert!((found - wanted).abs() < 1e-14, "{size}: {found} {wanted}");
+        }
+    }
+}

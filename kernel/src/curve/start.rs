@@ -65,10 +65,22 @@ fn carry<const D: usize>(
     x - (from + to) * (x.dot(to) / (1.0 + cosine))
 }
 
+/// The direction of what of a vector lies across a unit vector, where that is longer than the root of `least`.
+fn direction_across<const D: usize>(
+    vector: &SVector<f64, D>,
+    along: &SVector<f64, D>,
+    least: f64,
+) -> Option<SVector<f64, D>> {
+    let beside = vector - along * vector.dot(along);
+    unit(&beside).filter(|_| beside.dot(&beside) > least)
+}
+
 /// A frame whose first row is the tangent; in space the second is along the curvature, if there is any.
 fn frame_of<const D: usize>(tangent: &SVector<f64, D>, curvature: &SVector<f64, D>) -> [SVector<f64, D>; D] {
     let mut frame = [*tangent; D];
-    let normal = if D == 2 { None } else { unit(curvature) };
+    // Of a curvature that is next to nothing rounding may leave a vector along the tangent.
+    let across = |normal: &SVector<f64, D>| (normal - tangent * normal.dot(tangent)).amax() > UNDECIDED;
+    let normal = if D == 2 { None } else { unit(curvature).filter(across) };
     frame[1] = normal.unwrap_or_else(|| perpendicular(tangent));
     if D == 3 {
         let [t, n] = [*tangent, frame[1]];
@@ -220,39 +232,46 @@ where
     }
 
     fn tangent(&self, joint: usize, side: usize, state: &[f64]) -> SVector<f64, D> {
-        let found = self.usual_tangent(joint, side, state);
+        if self.rule(joint, side) != Rule::Mirror {
+            return self.settled_tangent(joint, side, state);
+        }
+        let mirrored = self.neighbour(joint, side).map(|other| {
+            let step = self.point(other, state) - self.point(joint, state);
+            let chord = unit(&if side == 1 { step } else { -step }).unwrap_or_else(SVector::zeros);
+            if self.rule(other, 1 - side) == Rule::Mirror {
+                chord
+            } else {
+                let there = self.settled_tangent(other, 1 - side, state);
+                chord * (2.0 * there.dot(&chord)) - there
+            }
+        });
+        self.turned(joint, side, self.beside_curvature(joint, side, mirrored))
+    }
+
+    /// The tangent of a joint that mirrors no other: nothing here calls itself, so that the stack has a bound.
+    fn settled_tangent(&self, joint: usize, side: usize, state: &[f64]) -> SVector<f64, D> {
+        let found = if self.rule(joint, side) == Rule::Given {
+            self.place.local_direction(&self.data(joint).tangent[side].value)
+        } else {
+            self.beside_curvature(joint, side, self.circle(joint, state).map(|[tangent, _]| tangent))
+        };
+        self.turned(joint, side, found)
+    }
+
+    fn turned(&self, joint: usize, side: usize, found: SVector<f64, D>) -> SVector<f64, D> {
         let kept = self.data(joint).tangent[side].given == Given::FIXED;
         if self.turned == Some(joint) && !kept { -found } else { found }
     }
 
-    fn usual_tangent(&self, joint: usize, side: usize, state: &[f64]) -> SVector<f64, D> {
-        let data = self.data(joint);
-        let here = self.point(joint, state);
-        let found = match self.rule(joint, side) {
-            Rule::Given => return self.place.local_direction(&data.tangent[side].value),
-            Rule::Circle => self.circle(joint, state).map(|[tangent, _]| tangent),
-            Rule::Mirror => self.neighbour(joint, side).map(|other| {
-                let step = self.point(other, state) - here;
-                let chord = unit(&if side == 1 { step } else { -step }).unwrap_or_else(SVector::zeros);
-                if self.rule(other, 1 - side) == Rule::Mirror {
-                    chord
-                } else {
-                    let there = self.tangent(other, 1 - side, state);
-                    chord * (2.0 * there.dot(&chord)) - there
-                }
-            }),
-        };
+    /// A given curvature without a tangent: the tangent is perpendicular to it, if that leaves anything.
+    fn beside_curvature(&self, joint: usize, side: usize, found: Option<SVector<f64, D>>) -> SVector<f64, D> {
         let found = found.unwrap_or_else(SVector::zeros);
-        let curvature = &data.curvature[side];
+        let curvature = &self.data(joint).curvature[side];
         if matches!(curvature.given, Given::INITIAL | Given::FIXED) {
-            // A given curvature without a tangent: the tangent is perpendicular to it, if that leaves anything.
-            let across = self.place.local_curvature(&curvature.value);
-            if let Some(across) = unit(&across) {
-                let beside = found - across * found.dot(&across);
-                if beside.dot(&beside) > UNDECIDED * UNDECIDED {
-                    return unit(&beside).unwrap_or(found);
-                }
-            }
+            let given = unit(&self.place.local_curvature(&curvature.value));
+            return given
+                .and_then(|given| direction_across(&found, &given, UNDECIDED * UNDECIDED))
+                .unwrap_or(found);
         }
         found
     }
@@ -270,17 +289,21 @@ where
             return self.free_curvature(joint, side, tangent, state);
         }
         let vector = self.place.local_curvature(&given.value);
-        let beside = vector - tangent * vector.dot(tangent);
         // What rounding leaves of a vector along the tangent has no direction, and not even to the side.
-        let across =
-            unit(&beside).filter(|_| beside.dot(&beside) > UNDECIDED * UNDECIDED * vector.dot(&vector));
+        let towards = direction_across(&vector, tangent, UNDECIDED * UNDECIDED * vector.dot(&vector));
         if given.given != Given::SIZE {
             let size = sqrt(vector.dot(&vector));
-            return across.map_or(vector, |across| across * size);
+            return towards.map_or(vector, |towards| towards * size);
         }
         // A value that runs along the tangent says nothing of the direction.
         let size = self.place.local_size(&given.value);
-        let towards = across.or_else(|| unit(&self.free_curvature(joint, side, tangent, state)));
+        let towards = towards.or_else(|| {
+            let free = self.free_curvature(joint, side, tangent, state);
+            let other = self.neighbour(joint, side).or(self.neighbour(joint, 1 - side))?;
+            let chord = self.point(other, state) - self.point(joint, state);
+            // Where the start runs straight on, what bends is rounding.
+            direction_across(&free, tangent, UNDECIDED * UNDECIDED / chord.dot(&chord))
+        });
         towards.unwrap_or_else(|| perpendicular(tangent)) * size
     }
 
@@ -488,9 +511,11 @@ where
             if matches!(given.given, Given::FIXED | Given::SIZE) {
                 let wanted = place.local_curvature(&given.value);
                 let towards = if given.given == Given::SIZE { curvature } else { wanted };
-                let towards = unit(&(towards - end.frame[0] * towards.dot(&end.frame[0])));
-                let towards = towards.unwrap_or_else(|| perpendicular(&end.frame[0]));
-                curvature = towards * place.local_size(&given.value);
+                let beside = towards - end.frame[0] * towards.dot(&end.frame[0]);
+                // What rounding leaves of a vector along the tangent has no direction.
+                let beside = unit(&beside).filter(|_| beside.amax() > UNDECIDED * towards.amax());
+                let beside = beside.unwrap_or_else(|| perpendicular(&end.frame[0]));
+                curvature = beside * place.local_size(&given.value);
             }
             // At a G1 joint both sides share the frame: it must not depend on the side's curvature.
             let shared = joint.continuity == Continuity::G1;
@@ -554,5 +579,166 @@ pub(super) fn give_speeds<const D: usize>(ends: &mut [End<D>; 2], length: f64, t
     for (end, sign) in ends.iter_mut().zip([-1.0, 1.0]) {
         end.speed = speed;
         end.stretch = sign * STRETCH_BY_TURN * square * speed;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::*;
+    use crate::curve::joint::{Curve, Given, Quantity};
+    use crate::curve::options::Options;
+    use crate::curve::placement::Place;
+    use crate::curve::solve::model;
+    use crate::solve::Problem;
+    use std::vec;
+
+    /// The start of a planar curve, and a state in which its points stand.
+    fn with<T>(curve: &Curve<'_>, turned: Option<usize>, work: impl Fn(&Start<'_, '_, 2>, &[f64]) -> T) -> T {
+        let Ok(Place::Plane(place)) = Place::of(curve, 1.0, 0) else { panic!("planar data") };
+        let model = model::<2>(curve, &Options::DEFAULT, &place);
+        let mut state = vec![f64::NAN; model.state_len()];
+        let start = Start { model: &model, place: &place, parts: 1, turned };
+        start.points(&mut state);
+        work(&start, &state)
+    }
+
+    const FREE: Joint = Joint::at([0.0; 3]).with_position(Quantity::FREE);
+
+    /// Of ten joints three are given: between them even steps, beyond an open curve's ends the next steps again, and around
+    /// a closed one's seam the steps between its last and its first.
+    #[test]
+    fn free_points_start_evenly_between_given_ones() {
+        let mut joints = [FREE; 10];
+        joints[2] = Joint::at([0.0, 0.0, 0.0]);
+        joints[5] = Joint::at([3.0, 6.0, 0.0]);
+        joints[7] = Joint::at([5.0, 0.0, 0.0]);
+        let inside = [[0.0, 0.0], [1.0, 2.0], [2.0, 4.0], [3.0, 6.0], [4.0, 3.0], [5.0, 0.0]];
+        let before_open = [[-2.0, -4.0], [-1.0, -2.0]];
+        let after_open = [[6.0, -3.0], [7.0, -6.0]];
+        let (before_closed, after_closed) = ([[2.0, 0.0], [1.0, 0.0]], [[4.0, 0.0], [3.0, 0.0]]);
+        for (curve, before, after) in [
+            (Curve::open(&joints), before_open, after_open),
+            (Curve { closed: true, ..Curve::open(&joints) }, before_closed, after_closed),
+        ] {
+            with(&curve, None, |start, state| {
+                for (joint, [x, y]) in before.into_iter().chain(inside).chain(after).enumerate() {
+                    let off = start.point(joint, state) - start.place.local_point(&[x, y, 0.0]);
+                    assert!(off.amax() < 1e-14, "{} {joint}: {off}", curve.closed);
+                }
+            });
+        }
+    }
+
+    /// At an end with a tangent: the circle that touches it and passes through the other joint, whichever end it is.
+    #[test]
+    fn a_lone_end_starts_on_the_circle_through_the_other() {
+        let joints = [Joint::at([0.0; 3]), Joint::at([4.0, 0.0, 0.0])];
+        with(&Curve::open(&joints), None, |start, state| {
+            let chord = start.point(1, state) - start.point(0, state);
+            let size = sqrt(chord.dot(&chord));
+            let curvature = |joint: usize, side: usize, tangent: [f64; 2]| {
+                let found = start.free_curvature(joint, side, &SVector::from(tangent), state) * size;
+                [found[0], found[1]]
+            };
+            let near = |found: [f64; 2], wanted: [f64; 2]| {
+                let off = SVector::from(found) - SVector::from(wanted);
+                assert!(off.amax() < 1e-12, "{found:?} {wanted:?}");
+            };
+            // Across the chord it is half a circle over it, here as there.
+            near(curvature(0, 1, [0.0, 1.0]), [2.0, 0.0]);
+            near(curvature(1, 0, [0.0, -1.0]), [-2.0, 0.0]);
+            let half = sqrt(0.5);
+            near(curvature(0, 1, [half, half]), [1.0, -1.0]);
+            near(curvature(0, 1, [-half, half]), [1.0, 1.0]);
+            near(curvature(1, 0, [half, -half]), [-1.0, -1.0]);
+            // Straight to the other joint there is none; straight away from it, half a circle over the chord, to the left.
+            near(curvature(0, 1, [1.0, 0.0]), [0.0, 0.0]);
+            near(curvature(1, 0, [1.0, 0.0]), [0.0, 0.0]);
+            near(curvature(0, 1, [-1.0, 0.0]), [0.0, -2.0]);
+            near(curvature(1, 0, [-1.0, 0.0]), [0.0, -2.0]);
+            // Only where it is straight away.
+            near(curvature(0, 1, [-0.8, 0.6]), [2.0 * 0.36, 2.0 * 0.48]);
+            // On the side without a neighbour it is that of the other side.
+            near(curvature(0, 0, [0.0, 1.0]), [2.0, 0.0]);
+            near(curvature(1, 1, [0.0, -1.0]), [-2.0, 0.0]);
+        });
+    }
+
+    #[test]
+    fn a_joint_that_the_data_turn_back_at_starts_on_half_a_circle() {
+        let joints = [Joint::at([0.0; 3]), Joint::at([4.0, 0.0, 0.0]), Joint::at([2.0, 0.0, 0.0])];
+        with(&Curve::open(&joints), None, |start, state| {
+            let Some([tangent, curvature]) = start.circle(1, state) else { panic!("a circle") };
+            let chord = start.point(0, state) - start.point(1, state);
+            assert!(tangent.dot(&chord).abs() < 1e-14 && (tangent.dot(&tangent) - 1.0).abs() < 1e-14);
+            // Over the longer of the two.
+            assert!((curvature * chord.dot(&chord) - chord * 2.0).amax() < 1e-12, "{curvature} {chord}");
+        });
+    }
+
+    /// However small it is.
+    #[test]
+    fn a_given_curvature_is_laid_across_the_tangent_and_keeps_its_size() {
+        let along = SVector::from([0.6, 0.8]);
+        let across = SVector::from([-0.8, 0.6]);
+        for size in [1e-9, 1e-3, 1.0, 1e5] {
+            for lean in [0.0, 0.1, -3.0] {
+                let given = across * -size + along * (lean * size);
+                let value = [given[0], given[1], 0.0];
+                for quantity in [Quantity::fixed(value), Quantity::initial(value), Quantity::of_size(value)] {
+                    let joints = [Joint::at([0.0; 3]).with_curvature(quantity), Joint::at([1.0, 1.0, 0.0])];
+                    with(&Curve::open(&joints), None, |start, state| {
+                        let found = start.curvature(0, 1, &along, state);
+                        let wanted = start.place.local_size(&value);
+                        assert!(found.dot(&along).abs() < 1e-12 * wanted);
+                        assert!(
+                            (found.dot(&across) + wanted).abs() < 1e-12 * wanted,
+                            "{size} {lean} {found}"
+                        );
+                    });
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_turned_tangent_looks_the_other_way_unless_it_is_fixed() {
+        for (given, turns) in [(Given::FREE, true), (Given::INITIAL, true), (Given::FIXED, false)] {
+            let tangent = Quantity { given, value: [1.0, 2.0, 0.0] };
+            let joints = [
+                Joint::at([0.0; 3]),
+                Joint::at([1.0, 1.0, 0.0]).with_tangent(tangent),
+                Joint::at([2.0, 0.5, 0.0]),
+            ];
+            let curve = Curve::open(&joints);
+            let of = |turned: Option<usize>, joint: usize| {
+                with(&curve, turned, |start, state| start.tangent(joint, 1, state))
+            };
+            let wanted = if turns { -of(None, 1) } else { of(None, 1) };
+            assert_eq!(of(Some(1), 1), wanted);
+            assert_eq!(of(Some(0), 1), of(None, 1));
+        }
+    }
+
+    #[test]
+    fn some_direction_lies_across_any_other_and_a_normal_is_carried_along() {
+        let directions =
+            [[1.0, 2.0, -3.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0], [-5.0, 0.1, 0.2], [0.3, -4.0, 1.0]];
+        for from in directions.map(SVector::<f64, 3>::from) {
+            let from = from / sqrt(from.dot(&from));
+            let across = perpendicular(&from);
+            assert!(across.dot(&from).abs() < 1e-15 && (across.dot(&across) - 1.0).abs() < 1e-15);
+            for to in directions.map(SVector::<f64, 3>::from) {
+                let to = to / sqrt(to.dot(&to));
+                // A turn about `from × to` changes neither sizes nor angles, nor what lies along that axis.
+                let there = carry(&across, &from, &to);
+                let axis = from.cross(&to);
+                assert!(there.dot(&to).abs() < 1e-14, "{there}");
+                assert!((there.dot(&there) - 1.0).abs() < 1e-14);
+                assert!((there - across).dot(&axis).abs() < 1e-14);
+            }
+        }
     }
 }

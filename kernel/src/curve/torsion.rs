@@ -515,6 +515,39 @@ mod tests {
         table[3]
     }
 
+    /// Along a curve with such derivatives, the fifth and more being zero; softened and not.
+    #[test]
+    fn the_slope_of_torsion_is_its_rate_of_change_along_the_curve() {
+        for d in samples() {
+            let at = |t: f64| {
+                let [d1, d2, d3, d4] = d;
+                [
+                    d1 + d2 * t + d3 * (t * t / 2.0) + d4 * (t * t * t / 6.0),
+                    d2 + d3 * t + d4 * (t * t / 2.0),
+                    d3 + d4 * t,
+                ]
+            };
+            for softening in [0.0, 0.3] {
+                let [found, rate] = torsion_and_slope(softening, &d);
+                assert!((found - torsion(softening, &at(0.0))).abs() <= 1e-14 * (1.0 + found.abs()));
+                let wanted = slope(1e-2, |t| torsion(softening, &at(t))) / d[0].norm();
+                assert!((rate - wanted).abs() < 1e-6 * (1.0 + wanted.abs()), "{softening}: {rate} {wanted}");
+            }
+        }
+        // A helix of radius 1 and pitch 2π: curvature and torsion are a half, and by a curvature of a half it is softened to
+        // a half of that.
+        let helix = [
+            Vector::new(0.0, 1.0, 1.0),
+            Vector::new(-1.0, 0.0, 0.0),
+            Vector::new(0.0, -1.0, 0.0),
+            Vector::new(1.0, 0.0, 0.0),
+        ];
+        for (softening, wanted) in [(0.0, 0.5), (0.5, 0.25)] {
+            let [found, rate] = torsion_and_slope(softening, &helix);
+            assert!((found - wanted).abs() < 1e-15 && rate.abs() < 1e-15, "{softening}: {found} {rate}");
+        }
+    }
+
     /// Compares a gradient with differences of the value, and a Hessian with differences of the gradient.
     fn compare<const N: usize>(
         d: &[Vector; N],

@@ -226,8 +226,11 @@ impl<P: Problem + ?Sized> Descent<'_, P> {
 mod tests {
     use super::*;
 
-    /// One element with two unknowns of its own; the objective is the product of two sums.
-    struct Product;
+    /// One element with two unknowns of its own; the objective is the product of two sums, and so many halves of the squares
+    /// of both.
+    struct Product {
+        squares: f64,
+    }
 
     impl Problem for Product {
         fn blocks(&self) -> usize {
@@ -261,7 +264,12 @@ mod tests {
             true
         }
         fn couple(&self, [one, other]: [f64; 2]) -> Coupled {
-            Coupled { value: one * other, first: [other, one], second: [[0.0, 1.0], [1.0, 0.0]] }
+            let squares = self.squares;
+            Coupled {
+                value: one * other + 0.5 * squares * (one * one + other * other),
+                first: [other + squares * one, one + squares * other],
+                second: [[squares, 1.0], [1.0, squares]],
+            }
         }
         fn sums(&self, _: usize, state: &[f64]) -> [f64; 2] {
             let (x, y) = (state[0], state[1]);
@@ -302,19 +310,24 @@ mod tests {
     fn what_sums_do_to_each_other_belongs_to_the_hessian() {
         let mut varied = Varied::new();
         varied.push(0, 2);
-        let (mut trial, mut spare, mut memory) = ([0.7, 0.4], [0.7, 0.4], [f64::NAN; 18]);
-        let descent = Descent { problem: &Product, varied: &varied, others: [0.0; 2], steps: 4, enough: 0.0 };
-        let sums = Product.sums(0, &trial);
-        let (found, steps) = descent.run(
-            [&mut trial, &mut spare],
-            &mut memory,
-            sums,
-            |state| Product.sums(0, state),
-            |state, first, [gradient, second, matrix]| {
-                Product.linearise_own(0, state, first, gradient, second, matrix).unwrap_or([f64::NAN; 2])
-            },
-        );
-        assert!(steps <= 4 && found == Product.sums(0, &trial), "{steps} {found:?}");
-        assert!((trial[0] - 0.5).abs() < 1e-10 && (trial[1] - 0.5).abs() < 1e-10, "{trial:?}");
+        for squares in [0.0, 1.0, 3.0] {
+            let product = Product { squares };
+            let (mut trial, mut spare, mut memory) = ([0.7, 0.4], [0.7, 0.4], [f64::NAN; 18]);
+            let descent =
+                Descent { problem: &product, varied: &varied, others: [0.0; 2], steps: 4, enough: 0.0 };
+            let sums = product.sums(0, &trial);
+            let (found, steps) = descent.run(
+                [&mut trial, &mut spare],
+                &mut memory,
+                sums,
+                |state| product.sums(0, state),
+                |state, first, [gradient, second, matrix]| {
+                    let own = product.linearise_own(0, state, first, gradient, second, matrix);
+                    own.unwrap_or([f64::NAN; 2])
+                },
+            );
+            assert!(steps <= 4 && found == product.sums(0, &trial), "{squares} {steps} {found:?}");
+            assert!(trial.iter().all(|x| (x - 0.5).abs() < 1e-10), "{squares} {trial:?}");
+        }
     }
 }

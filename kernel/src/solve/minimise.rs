@@ -527,3 +527,22 @@ impl<P: Problem + ?Sized> Run<'_, P> {
         self.coupled.value
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{ROUNDING_SAFETY, noise};
+    use crate::root::sqrt;
+
+    /// The square of a residual that is wrong by so many units of its natural size, and that of its own last digit.
+    #[test]
+    fn what_counts_as_noise_is_what_rounding_of_residuals_does_to_the_cost() {
+        let unit = ROUNDING_SAFETY * f64::EPSILON;
+        for (value, natural) in [(1.0, 1.0), (1e-6, 4.0), (1e-29, 1.0), (0.0, 9.0), (1e4, 1e-8), (2.0, 0.0)] {
+            let wrong = sqrt(value) + unit * sqrt(natural);
+            // Written out, so that nothing cancels.
+            let risen = unit * sqrt(natural) * (wrong + sqrt(value)) + f64::EPSILON * value;
+            let found = noise(value, natural);
+            assert!(found <= risen && found >= 0.5 * risen, "{value} {natural}: {found} {risen}");
+        }
+    }
+}

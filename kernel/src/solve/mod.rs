@@ -32,3 +32,6 @@ pub use problem::{BlockList, Coupled, MAX_ELEMENT_BLOCKS, Problem, packed, packe
 pub use report::{Control, Observer, Outcome, Record, Silent, Status};
 pub(crate) use workspace::Indices;
 pub use workspace::{WorkspaceTooSmall, workspace_len};
+
+#[cfg(test)]
+mod tests;

@@ -214,3 +214,97 @@ pub(super) fn order_blocks<P: Problem + ?Sized>(problem: &P, work: &mut Workspac
     }
     entries
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::super::workspace::Layout;
+    use super::*;
+    use core::ops::Range;
+    use std::vec;
+    use std::vec::Vec;
+
+    /// Blocks of one unknown each, of which the elements join two; the last `fixed` ones are none.
+    struct Joined<'a> {
+        blocks: usize,
+        fixed: usize,
+        pairs: &'a [[usize; 2]],
+    }
+
+    impl Problem for Joined<'_> {
+        fn blocks(&self) -> usize {
+            self.blocks
+        }
+        fn dofs(&self, block: usize) -> usize {
+            usize::from(block < self.blocks - self.fixed)
+        }
+        fn state_range(&self, block: usize) -> Range<usize> {
+            block..block + 1
+        }
+        fn state_len(&self) -> usize {
+            self.blocks
+        }
+        fn elements(&self) -> usize {
+            self.pairs.len()
+        }
+        fn element_blocks(&self, element: usize, blocks: &mut BlockList) {
+            blocks.extend(self.pairs[element]);
+        }
+        fn max_element_dofs(&self) -> usize {
+            2
+        }
+        fn cost(&self, _: usize, _: &[f64]) -> f64 {
+            0.0
+        }
+        fn linearise(&self, _: usize, _: &[f64], _: &mut [f64], _: &mut [f64]) -> f64 {
+            0.0
+        }
+        fn retract(&self, _: usize, _: &[f64], _: &[f64], _: &mut [f64]) {}
+        fn natural_sizes(&self, _: usize, _: &[f64], _: &mut [f64]) {}
+        fn natural_cost(&self) -> f64 {
+            1.0
+        }
+    }
+
+    fn order_of(blocks: usize, fixed: usize, pairs: &[[usize; 2]]) -> (Vec<usize>, usize) {
+        let problem = Joined { blocks, fixed, pairs };
+        let layout = Layout::of(&problem, 1);
+        let mut memory = vec![f64::NAN; layout.len()];
+        let mut work = layout.carve(&mut memory).expect("enough memory");
+        let entries = order_blocks(&problem, &mut work);
+        ((0..blocks).map(|at| work.order.get(at)).collect(), entries)
+    }
+
+    /// ```text
+    /// 3 — 0 — 5 — 1 — 4
+    ///         |
+    ///         2
+    /// ```
+    ///
+    /// The first search starts at 2, of the least number among those with one neighbour; from 3, the least in its last level,
+    /// the structure is deeper, from 4 it is not any more. Of the neighbours of 5 then 2 comes before 0, having less of
+    /// its own. Reversed.
+    #[test]
+    fn a_tree_is_ordered_from_the_end_of_its_longest_path() {
+        let pairs = [[3, 0], [0, 5], [5, 1], [1, 4], [2, 5]];
+        let (order, entries) = order_of(6, 0, &pairs);
+        assert_eq!(order, [3, 0, 2, 5, 1, 4]);
+        // 5 reaches back to 0, over 2; every other one but 2 to its neighbour.
+        assert_eq!(entries, 1 + 2 + 1 + 3 + 2 + 2);
+        // However the elements are listed.
+        let backwards = pairs.map(|[a, b]| [b, a]);
+        assert_eq!(order_of(6, 0, &backwards).0, order);
+        let mut shuffled = pairs;
+        shuffled.reverse();
+        assert_eq!(order_of(6, 0, &shuffled).0, order);
+    }
+
+    #[test]
+    fn parts_that_nothing_joins_come_one_after_the_other_and_what_is_fixed_last() {
+        // A path 4 — 0 — 2, a pair 1 — 3, and 5, which is fixed, between them.
+        let (order, entries) = order_of(6, 1, &[[0, 4], [2, 0], [3, 1], [5, 4], [1, 5]]);
+        assert_eq!(order, [1, 3, 2, 0, 4, 5]);
+        assert_eq!(entries, 1 + 2 + 1 + 2 + 2);
+    }
+}

@@ -64,7 +64,7 @@ impl<'a> RankTwo<'a> {
         } else {
             let (largest, [x, y]) = largest_eigenpair(&c);
             let along = x * (m[0][0] * x + m[0][1] * y) + y * (m[1][0] * x + m[1][1] * y);
-            determinant < 0.0 && 1.0 + largest * along < 0.0
+            largest > 0.0 && determinant < 0.0 && 1.0 + largest * along < 0.0
         };
         if !definite {
             return false;
@@ -109,4 +109,26 @@ fn largest_eigenpair([[a, b], [_, c]]: &[[f64; 2]; 2]) -> (f64, [f64; 2]) {
     let (x, y) = if half >= 0.0 { (half + spread, *b) } else { (*b, spread - half) };
     let size = sqrt(x * x + y * y);
     (mean + spread, if size > 0.0 { [x / size, y / size] } else { [1.0, 0.0] })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::largest_eigenpair;
+
+    /// To the last digits, also where the matrix is nearly diagonal, whichever end is the larger.
+    #[test]
+    fn the_direction_of_the_largest_eigenvalue_keeps_its_digits() {
+        for small in [1.0, 1e-3, 1e-9, -1e-12, 0.0] {
+            for [a, c] in [[2.0, 1.0], [1.0, 2.0], [-1.0, -2.0], [-3.0, 1.0]] {
+                let (value, [x, y]) = largest_eigenpair(&[[a, small], [small, c]]);
+                // The smaller of the two parts, by the first equation or the second.
+                let (large, found) = if a > c { (x, y) } else { (y, x) };
+                let wanted = large * small / (value - if a > c { c } else { a });
+                assert!((found - wanted).abs() <= 1e-15 * wanted.abs(), "{a} {small} {c}: {found} {wanted}");
+                assert!((x * x + y * y - 1.0).abs() < 1e-15);
+                assert!(value >= a && value >= c);
+                assert!(((value - a) * (value - c) - small * small).abs() < 1e-15);
+            }
+        }
+    }
 }

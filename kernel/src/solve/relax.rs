@@ -125,3 +125,14 @@ fn relax_element<P: Problem + ?Sized>(
     }
     linearisations
 }
+
+#[cfg(test)]
+mod tests {
+    use super::weigh;
+
+    #[test]
+    fn a_sum_without_weight_counts_nothing_whatever_it_is() {
+        assert_eq!(weigh([2.0, 3.0], [5.0, 7.0]), 31.0);
+        assert_eq!(weigh([2.0, f64::INFINITY], [5.0, 0.0]), 10.0);
+    }
+}

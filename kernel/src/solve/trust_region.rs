@@ -4,7 +4,7 @@
 //! least `shift ≥ 0` that makes the matrix positive definite and the step no longer than the radius; `shift` is
 //! found by Newton's method on `1/radius − 1/|s|`, safeguarded by bounds.
 
-use super::envelope::{Allow, Envelope, Factored, dot};
+use super::envelope::{Allow, Envelope, Factored, Indefinite, dot};
 use super::rank_two::RankTwo;
 use crate::order::Order;
 use crate::root::sqrt;
@@ -83,6 +83,44 @@ impl Vectors<'_> {
         dot(self.scratch, self.scratch)
     }
 
+    /// Factors the matrix with this shift, to nothing where the coupling leaves it indefinite.
+    fn factor(
+        &mut self,
+        envelope: &Envelope<'_, '_>,
+        matrix: &[f64],
+        norm: f64,
+        shift: f64,
+    ) -> Result<Option<Factored>, Indefinite> {
+        let allow = self.allow();
+        let factored = envelope.factor(matrix, norm, shift, allow, self.factor)?;
+        Ok(match &mut self.coupling {
+            Some(coupling) => coupling.take(envelope, self.factor, factored).then_some(factored),
+            None => Some(factored),
+        })
+    }
+
+    fn allow(&self) -> Allow {
+        self.coupling.as_ref().map_or(Allow::Definite, |coupling| coupling.allow)
+    }
+
+    /// Into `direction`: that of the least eigenvalue, of the factored matrix, which is nearly singular (inverse iteration).
+    fn ridge(&mut self, envelope: &Envelope<'_, '_>, factored: Factored) {
+        // Golden shares of a turn: no symmetry that a direction may have is theirs.
+        let mut share = 0u32;
+        for z in self.direction.iter_mut() {
+            share = share.wrapping_add(0x9e37_79b9);
+            *z = f64::from(share);
+        }
+        for _ in 0..RIDGE_ITERATIONS {
+            let size = sqrt(dot(self.direction, self.direction));
+            self.direction.iter_mut().for_each(|z| *z /= size);
+            envelope.solve(self.factor, factored, self.direction);
+            if let Some(coupling) = &self.coupling {
+                coupling.correct(self.direction);
+            }
+        }
+    }
+
     /// The decrease that the model promises for the step.
     fn promise(&mut self, envelope: &Envelope<'_, '_>, matrix: &[f64]) -> f64 {
         envelope.multiply(matrix, self.step, self.scratch);
@@ -95,6 +133,10 @@ impl Vectors<'_> {
 
 /// How near to the radius a step on the boundary must be.
 const RADIUS_TOLERANCE: f64 = 0.1;
+/// A negative curvature of less than this part of the matrix is rounding.
+const RIDGE: f64 = 1e-10;
+/// The shift is within a thousandth of the least eigenvalue: every turn leaves about as much of the others.
+const RIDGE_ITERATIONS: usize = 3;
 /// More factorisations than the safeguarded iteration ever needs.
 const MOST_FACTORISATIONS: usize = 100;
 
@@ -111,20 +153,17 @@ pub(super) fn solve(
         norm += coupling.norm();
     }
     let gradient_length = sqrt(dot(vectors.gradient, vectors.gradient));
-    let allow = vectors.coupling.as_ref().map_or(Allow::Definite, |coupling| coupling.allow);
+    let allow = vectors.allow();
     let (mut low, mut high) = (0.0f64, gradient_length / radius + norm);
     if !high.is_finite() {
         return None;
     }
     let mut shift = 0.0;
-    let mut have_direction = false;
+    let (mut is_indefinite, mut have_direction) = (false, false);
     let mut best: Option<Step> = None;
     for _ in 0..MOST_FACTORISATIONS {
-        let definite = match envelope.factor(matrix, sparse_norm, shift, allow, vectors.factor) {
-            Ok(factored) => match &mut vectors.coupling {
-                Some(coupling) => coupling.take(envelope, vectors.factor, factored).then_some(factored),
-                None => Some(factored),
-            },
+        let definite = match vectors.factor(envelope, matrix, sparse_norm, shift) {
+            Ok(definite) => definite,
             Err(failure) => {
                 if allow == Allow::Definite {
                     envelope.negative_direction(vectors.factor, &failure, vectors.direction);
@@ -138,6 +177,7 @@ pub(super) fn solve(
             }
         };
         let Some(factored) = definite else {
+            is_indefinite = true;
             low = low.larger(shift);
             high = high.larger(low * 1.01 + 1e-300);
             shift = between(low, high, last_shift);
@@ -153,8 +193,18 @@ pub(super) fn solve(
         }
         if length < radius {
             high = shift;
-            if have_direction && high - low <= 1e-3 * high.larger(f64::MIN_POSITIVE) {
-                return Some(to_boundary(envelope, matrix, vectors, radius, found));
+            if is_indefinite && high - low <= 1e-3 * high.larger(f64::MIN_POSITIVE) {
+                // A little above: where the shift itself is the eigenvalue, rounding hides the direction.
+                if allow == Allow::OneNegative
+                    && high > RIDGE * norm
+                    && let Ok(Some(factored)) = vectors.factor(envelope, matrix, sparse_norm, 1.001 * high)
+                {
+                    vectors.ridge(envelope, factored);
+                    have_direction = true;
+                }
+                if have_direction {
+                    return Some(to_boundary(envelope, matrix, vectors, radius, found));
+                }
             }
         } else {
             low = low.larger(shift);
@@ -168,10 +218,7 @@ pub(super) fn solve(
     }
     // The interval closed: the last step that a factorisation gave is shortened to the ball where it is too long.
     let found = best?;
-    let factored = envelope.factor(matrix, sparse_norm, found.shift, allow, vectors.factor).ok()?;
-    if let Some(coupling) = &mut vectors.coupling {
-        coupling.take(envelope, vectors.factor, factored);
-    }
+    let factored = vectors.factor(envelope, matrix, sparse_norm, found.shift).ok()??;
     vectors.newton(envelope, factored);
     if found.length > radius {
         let shrink = radius / found.length;

@@ -3,6 +3,7 @@
  * which scripts/cross/bounds.sh makes into a table.
  */
 #include "minvar.h"
+#include "platform/decimal.h"
 #include "platform/meter.h"
 #include "platform/platform.h"
 
@@ -12,15 +13,9 @@ static double workspace[MOST_WORKSPACE];
 static minvar_element elements[MOST_ELEMENTS];
 
 static void number(uint64_t value) {
-    char text[24];
-    size_t first = sizeof text - 1;
-    text[first] = '\0';
-    do {
-        text[--first] = (char)('0' + value % 10);
-        value /= 10;
-    } while (value != 0);
+    char room[24];
     platform_print(";");
-    platform_print(text + first);
+    platform_print(decimal(value, room));
 }
 
 /* 1 if the curve converged. */
@@ -70,6 +65,9 @@ static void calibrate(void) {
 int main(void) {
     static const char *const words[] = {"MVC", "MEC", "SI-MVC", "SI-MEC", "space MVC", "space MEC"};
     static const double points[JOINTS][2] = {{0, 0}, {1, 1.9}, {2, 2.7}, {3, 2.6}, {4, 1.6}, {5, 0.89}, {6, 1.2}};
+    /* Of the helix in figure 4.21 of the thesis. */
+    static const double helix[JOINTS][2] = {{6.28319, 0}, {3.14159, 3.14159}, {0, 0}, {3.14159, -3.14159},
+                                            {6.28319, 0}, {3.14159, 3.14159}, {0, 0}};
     minvar_joint two[2], two_lifted[2], seven[JOINTS], seven_lifted[JOINTS];
     two[0] = minvar_joint_with_tangent(minvar_joint_at(0.5, -12, 0), MINVAR_FIXED, 0, 1, 0);
     two[0] = minvar_joint_with_curvature(two[0], MINVAR_FIXED, 0.27, 0, 0);
@@ -78,7 +76,7 @@ int main(void) {
     two_lifted[1] = minvar_joint_with_tangent(minvar_joint_at(20, -0.5, 6), MINVAR_FIXED, 1, 0, 0);
     for (int i = 0; i < JOINTS; i++) {
         seven[i] = minvar_joint_at(points[i][0], points[i][1], 0);
-        seven_lifted[i] = minvar_joint_at(points[i][0], points[i][1], 0.3 * i * i);
+        seven_lifted[i] = minvar_joint_at(helix[i][0], helix[i][1], (6 - i) * 1.5708);
     }
     int good = 1;
     calibrate();

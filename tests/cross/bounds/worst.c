@@ -6,6 +6,7 @@
  *     solve;FUNCTION;FUNCTIONAL;planar|space;elements;iterations;linearisations;instructions;the case    (every solve)
  */
 #include "corpus/corpus.h"
+#include "platform/decimal.h"
 #include "platform/meter.h"
 #include "platform/platform.h"
 
@@ -41,15 +42,9 @@ static void note(enum function which, reading read) {
 static void text(const char *words) { platform_print(words); }
 
 static void number(uint64_t value) {
-    char digits[24];
-    size_t first = sizeof digits - 1;
-    digits[first] = '\0';
-    do {
-        digits[--first] = (char)('0' + value % 10);
-        value /= 10;
-    } while (value != 0);
+    char room[24];
     text(";");
-    text(digits + first);
+    text(decimal(value, room));
 }
 
 /* The solves of the case that is being computed: its name comes with its first line. */

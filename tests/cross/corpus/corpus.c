@@ -1,5 +1,6 @@
 /* The list of the corpus, and how its lines are named. */
 #include "corpus.h"
+#include "platform/decimal.h"
 
 static corpus_listener listen;
 static char name[96];
@@ -10,17 +11,6 @@ static void append(const char *text) {
         name[name_length++] = *text++;
     }
     name[name_length] = '\0';
-}
-
-static void append_number(unsigned number) {
-    char digits[12];
-    size_t first = sizeof digits - 1;
-    digits[first] = '\0';
-    do {
-        digits[--first] = (char)('0' + number % 10);
-        number /= 10;
-    } while (number != 0);
-    append(digits + first);
 }
 
 void begin(const char *first, const char *second, const char *third) {
@@ -35,8 +25,8 @@ void begin(const char *first, const char *second, const char *third) {
 }
 
 void begin_number(const char *first, const char *second, unsigned number) {
-    begin(first, second, "");
-    append_number(number);
+    char room[24];
+    begin(first, second, decimal(number, room));
 }
 
 void end(const char *part, const digest *sum, const char *outcome) {

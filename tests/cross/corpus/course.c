@@ -84,7 +84,8 @@ static size_t memory(const problem *data, digest *sum) {
     return code == MINVAR_OK ? needed : MOST_WORKSPACE;
 }
 
-int solve(const problem *data) {
+/* From the data alone, or from the elements that are there. */
+static int attempt(const problem *data, int warm) {
     const minvar_curve curve = curve_of(data);
     digest sum = empty_digest();
     const size_t room = memory(data, &sum);
@@ -93,24 +94,17 @@ int solve(const problem *data) {
     }
     history seen = {empty_digest(), 0, data->cancel_at};
     minvar_error error;
-    const minvar_code code = minvar_curve_solve(&curve, &data->options, workspace, room, observe, &seen, elements,
-                                                MOST_ELEMENTS, records, MOST_RECORDS, &report, &error);
-    return told(&seen, &sum, code, &error, MOST_RECORDS);
+    const minvar_code code =
+        warm ? minvar_curve_update(&curve, &data->options, workspace, room, observe, &seen, elements, MOST_ELEMENTS,
+                                   &report, &error)
+             : minvar_curve_solve(&curve, &data->options, workspace, room, observe, &seen, elements, MOST_ELEMENTS,
+                                  records, MOST_RECORDS, &report, &error);
+    return told(&seen, &sum, code, &error, warm ? 0 : MOST_RECORDS);
 }
 
-int update(const problem *data) {
-    const minvar_curve curve = curve_of(data);
-    digest sum = empty_digest();
-    const size_t room = memory(data, &sum);
-    if (room == 0) {
-        return 0;
-    }
-    history seen = {empty_digest(), 0, data->cancel_at};
-    minvar_error error;
-    const minvar_code code = minvar_curve_update(&curve, &data->options, workspace, room, observe, &seen, elements,
-                                                 MOST_ELEMENTS, &report, &error);
-    return told(&seen, &sum, code, &error, 0);
-}
+int solve(const problem *data) { return attempt(data, 0); }
+
+int update(const problem *data) { return attempt(data, 1); }
 
 static void places(digest *sum, const minvar_figures *figures) {
     minvar_point point = {0};

@@ -86,6 +86,47 @@ static void stalled(void) {
     course(&data, SOLVE);
 }
 
+/* A given length is met, to a tolerance as well, or cannot be: 6.75 is hardly more than the straight ways. */
+static void lengths(void) {
+    static const double given[] = {6.75, 7, 8};
+    for (unsigned k = 0; k < 3; k++) {
+        problem data = through(points, 5, 0);
+        data.options.length = given[k];
+        data.options.max_iterations = 100;
+        data.options.functional = k % 2 == 0 ? MINVAR_MVC : MINVAR_MEC;
+        begin_number("endings", "length", k);
+        course(&data, MEASURE);
+        data.options.elements_per_span = 4;
+        data.options.tolerance = 1e-4;
+        begin_number("endings", "length-within-tolerance", k);
+        course(&data, SOLVE);
+    }
+    problem data = through(points, 5, 0);
+    data.options.length = 6;
+    begin("endings", "length", "too-short");
+    course(&data, SOLVE);
+}
+
+/* A curvature of which only the size is given, where the data without it run straight on: to which side it bends is
+   a choice, and every machine's is the same. */
+static void bent_from_straight(void) {
+    for (unsigned k = 0; k < 6; k++) {
+        static const double ways[3][3] = {{1, 0, 0}, {1, 2, 0}, {3, 2, -1}};
+        problem data = blank();
+        const double *const way = ways[k / 2];
+        data.joint_count = 3;
+        for (size_t i = 0; i < 3; i++) {
+            const double at = (double)i;
+            data.joints[i] = minvar_joint_at(at * way[0], at * way[1], at * way[2]);
+        }
+        minvar_joint *const bent = &data.joints[k % 2];
+        *bent = minvar_joint_with_tangent(*bent, MINVAR_FIXED, way[0], way[1], way[2]);
+        *bent = minvar_joint_with_curvature(*bent, MINVAR_SIZE, 0.25, 0, 0);
+        begin_number("endings", "bent-from-straight", k);
+        course(&data, SOLVE);
+    }
+}
+
 static void cancelled(void) {
     for (size_t at = 1; at <= 6; at++) {
         problem data = through(points, 5, 0);
@@ -130,6 +171,8 @@ void endings(void) {
     steep_curves();
     turns();
     stalled();
+    lengths();
+    bent_from_straight();
     cancelled();
     sizes();
 }

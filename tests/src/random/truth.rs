@@ -9,8 +9,9 @@ use super::judge::{MEANINGLESS, judge, natural, polygon};
 use super::problem::Problem;
 use super::samples::Family;
 use crate::ceres::{self, Start};
+use crate::compare::reference_joint;
 use crate::curves::solve_curve;
-use minvar::curve::{Continuity, Curve, Functional, Given, Joint, Options, Quantity};
+use minvar::curve::{Curve, Functional, Given, Joint, Options, Quantity};
 use minvar::solve::Status;
 
 /// A minimum that exists, and which way finds it.
@@ -136,11 +137,6 @@ fn reference(problem: &Problem, functional: Functional) -> Option<Result<Minimum
         Functional(2) => ceres::Functional::SiMvc,
         _ => return None,
     };
-    let given = |quantity: &Quantity| match quantity.given {
-        Given::FREE => ceres::Given::Free,
-        Given::INITIAL => ceres::Given::Initial(quantity.value),
-        _ => ceres::Given::Fixed(quantity.value),
-    };
     let one_sided = |joint: &Joint| {
         joint.tangent[0] == joint.tangent[1]
             && joint.curvature[0] == joint.curvature[1]
@@ -149,20 +145,7 @@ fn reference(problem: &Problem, functional: Functional) -> Option<Result<Minimum
     if !problem.plain.iter().all(one_sided) {
         return None;
     }
-    let joints: Vec<ceres::Joint> = problem
-        .plain
-        .iter()
-        .map(|joint| ceres::Joint {
-            position: given(&joint.position),
-            tangent: given(&joint.tangent[0]),
-            curvature: given(&joint.curvature[0]),
-            continuity: match joint.continuity {
-                Continuity::G0 => ceres::Continuity::G0,
-                Continuity::G1 => ceres::Continuity::G1,
-                _ => ceres::Continuity::G2,
-            },
-        })
-        .collect();
+    let joints: Vec<ceres::Joint> = problem.plain.iter().map(reference_joint).collect();
     let reference = ceres::Problem::new(&joints, problem.closed, problem.planar, functional);
     let near = Curve::new(&problem.plain, problem.closed);
     Some(ceres::solve(&reference, Start::Thesis, &ceres::Options::newton()).and_then(|found| {

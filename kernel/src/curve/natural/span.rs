@@ -468,3 +468,180 @@ pub(super) fn condense<const N: usize, const C: usize>(
     }
     Some(out)
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::super::functions::{COARSE, FINE};
+    use super::*;
+    use crate::basis::quadrature::legendre;
+
+    const WEIGH: Weigh = Weigh { bend: 0.7, slope: 0.4, length: 0.3 };
+    /// Turned either way, curved at the ends as it likes or not.
+    const SHARED: [[f64; 4]; 3] = [[0.4, 0.3, -0.5, -0.2], [-0.7, 0.1, 0.9, 0.6], [0.3, -0.4, 0.6, 0.8]];
+    const CHORD: f64 = 1.7;
+
+    /// Follows Newton's method in the span's own values.
+    fn settled<const N: usize, const C: usize>(
+        tables: &Tables<N, C>,
+        mut span: Span<N>,
+        weigh: &Weigh,
+    ) -> (Span<N>, Condensed<N>) {
+        for _ in 0..40 {
+            let found = condense(tables, &span, weigh, 1.0, true).expect("a regular span");
+            let change = found.follow[..N - 3].iter().fold(0.0f64, |most, row| most.larger(row[0].abs()));
+            if found.gap < 1e-14 && change < 1e-13 {
+                return (span, found);
+            }
+            span.advance(&[0.0; 4], 0.0, found.follow.as_flattened(), 1.0);
+        }
+        panic!("Newton's method does not settle");
+    }
+
+    fn started<const N: usize, const C: usize>(tables: &Tables<N, C>, shared: [f64; 4]) -> Span<N> {
+        let mut span = Span { chord: CHORD, shared, own: [0.0; N] };
+        span.own[0] = 1.0;
+        assert!(span.close(tables, [false; 2], 0), "{shared:?}");
+        span
+    }
+
+    /// The slope of `f` at 0, by differences of two steps.
+    fn slope<const K: usize>(f: impl Fn(f64) -> [f64; K]) -> [f64; K] {
+        let difference = |h: f64| {
+            let (up, down) = (f(h), f(-h));
+            core::array::from_fn::<f64, K, _>(|i| (up[i] - down[i]) / (2.0 * h))
+        };
+        let (wide, narrow) = (difference(2e-3), difference(1e-3));
+        core::array::from_fn(|i| (4.0 * narrow[i] - wide[i]) / 3.0)
+    }
+
+    fn near(found: f64, wanted: f64, what: &str) {
+        assert!((found - wanted).abs() < 1e-7 * (1.0 + wanted.abs()), "{what}: {found}, not {wanted}");
+    }
+
+    /// A condensed span is the least of its functional by what it shares: its derivatives are differences of that.
+    fn derivatives_agree<const N: usize, const C: usize>(tables: &Tables<N, C>) {
+        for shared in SHARED {
+            let (span, found) = settled(tables, started(tables, shared), &WEIGH);
+            let moved = |f: usize, by: f64| {
+                let mut span = span;
+                span.shared[f] += by;
+                settled(tables, span, &WEIGH)
+            };
+            for f in 0..4 {
+                let [value, length] = slope(|by| {
+                    let (span, _) = moved(f, by);
+                    [span.integral(tables, &WEIGH), span.length()]
+                });
+                near(found.gradient[f], value, "gradient");
+                near(found.length_gradient[f], length, "length's gradient");
+                let gradient = slope(|by| moved(f, by).1.gradient);
+                let own = slope(|by| moved(f, by).0.own);
+                for e in 0..4 {
+                    near(found.hessian[e][f], gradient[e], "Hessian");
+                }
+                for (row, own) in found.follow.iter().zip(own).take(N - 3) {
+                    near(row[1 + f], own, "what follows");
+                }
+            }
+            let tightened = |by: f64| {
+                let weigh = Weigh { length: WEIGH.length + by, ..WEIGH };
+                settled(tables, span, &weigh)
+            };
+            let own = slope(|by| tightened(by).0.own);
+            for (row, own) in found.follow.iter().zip(own).take(N - 3) {
+                near(row[5], own, "what follows of the tension");
+            }
+            let gradient = slope(|by| tightened(by).1.gradient);
+            for f in 0..4 {
+                near(found.length_gradient[f], gradient[f], "the gradient by the tension");
+            }
+        }
+    }
+
+    #[test]
+    fn a_condensed_span_has_the_derivatives_of_its_least_functional() {
+        derivatives_agree(&COARSE);
+        derivatives_agree(&FINE);
+    }
+
+    #[test]
+    fn the_sums_are_those_of_the_curve_that_the_direction_draws() {
+        let rule = legendre(32).expect("a rule");
+        for shared in SHARED {
+            let (span, found) = settled(&FINE, started(&FINE, shared), &WEIGH);
+            let (q, length) = (span.coefficients(), span.length());
+            let direction = |u: f64| {
+                let by = super::super::functions::functions::<24>(u);
+                by.map(|row| row.iter().zip(&q).map(|(f, q)| f * q).sum::<f64>())
+            };
+            let (mut end, mut bends, mut slopes) = ([0.0; 2], 0.0, 0.0);
+            for (u, w) in rule.iter() {
+                let [theta, by_u, by_uu] = direction(u);
+                end[0] += w * length * libm::cos(theta);
+                end[1] += w * length * libm::sin(theta);
+                slopes += w * by_u * by_u / length;
+                bends += w * by_uu * by_uu / (length * length * length);
+            }
+            near(end[0], CHORD, "along the chord");
+            near(end[1], 0.0, "across it");
+            let [found_bends, found_slopes, found_length] = found.sums;
+            near(found_bends, bends, "variation");
+            near(found_slopes, slopes, "bending");
+            near(found_length, length, "length");
+            let value = WEIGH.bend * bends + WEIGH.slope * slopes + WEIGH.length * length;
+            near(span.integral(&FINE, &WEIGH), value, "functional");
+            near(span.turning(&FINE), sqrt(slopes * length), "turning");
+            // The shared values are the direction and the curvature at the ends.
+            let [phi0, k0, phi1, k1] = shared;
+            for (u, phi, k) in [(0.0, phi0, k0), (1.0, phi1, k1)] {
+                near(direction(u)[0], phi, "direction");
+                near(direction(u)[1] / length, k, "curvature");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_left_out_is_what_more_functions_gain() {
+        for shared in SHARED {
+            let (coarse, found) = settled(&COARSE, started(&COARSE, shared), &WEIGH);
+            let (fine, rest) = settled(&FINE, started(&FINE, shared), &WEIGH);
+            let gain = coarse.integral(&COARSE, &WEIGH) - fine.integral(&FINE, &WEIGH);
+            assert!(
+                gain > 0.0 && found.left_out > 0.25 * gain && found.left_out < 2.0 * gain,
+                "{gain} {}",
+                found.left_out
+            );
+            assert!(rest.left_out < 1e-9 * found.left_out, "{}", rest.left_out);
+        }
+    }
+
+    #[test]
+    fn a_span_is_closed_the_nearest_way_and_then_the_next() {
+        for shared in SHARED {
+            for alone in [[false; 2], [true, false], [false, true], [true; 2]] {
+                let closed = |skip: usize| {
+                    let mut span = Span { chord: CHORD, shared, own: [0.0; 24] };
+                    span.own[0] = 1.1;
+                    span.close(&FINE, alone, skip).then_some(span)
+                };
+                let mut seen = std::vec::Vec::new();
+                for skip in 0..3 {
+                    let Some(span) = closed(skip) else { continue };
+                    let gap = condense(&FINE, &span, &WEIGH, 1.0, true).map(|found| found.gap);
+                    assert!(gap.is_none_or(|gap| gap < 0.1), "{shared:?} {alone:?} {skip}: {gap:?}");
+                    assert!(span.length() > CHORD * (1.0 - 1e-9) && span.own[0] < 1.0 / LEAST_REACH);
+                    assert_eq!([span.shared[0], span.shared[2]], [shared[0], shared[2]]);
+                    for end in 0..2 {
+                        assert!(alone[end] || span.shared[1 + 2 * end] == shared[1 + 2 * end]);
+                    }
+                    let way = [span.own[1], span.shared[1], span.shared[3], span.length()];
+                    assert!(!seen.contains(&way), "{skip} is another way");
+                    seen.push(way);
+                }
+                assert!(!seen.is_empty(), "{shared:?} {alone:?}");
+                assert!(seen.windows(2).all(|two| two[0][3] <= two[1][3] * 1.5), "{seen:?}");
+            }
+        }
+    }
+}

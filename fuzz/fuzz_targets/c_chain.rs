@@ -1,0 +1,4 @@
+//! Measuring, converting and paths through the C boundary.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| hostile::chain::run(bytes));
