@@ -31,7 +31,7 @@ OUT := coving
 LIB := target/release/libminvar.a
 WARN := -std=c11 -Wall -Wextra -Wpedantic -Wconversion -Werror
 
-.PHONY: coving test test-clients no-panic no-panic-arm miri fuzz sanitize lint header help tools lib examples table random \
+.PHONY: coving test test-clients no-panic no-panic-arm miri fuzz sanitize lint header help tools ceres lib examples table random \
 	bench profile peer-tools memory pictures figures clean cross cross-ci cross-hashes cross-curves cross-tools bounds mutants
 
 help:
@@ -40,6 +40,11 @@ help:
 tools:
 	@command -v $(CARGO) >/dev/null || { echo "minvar needs Rust 1.89 or later: https://rustup.rs" >&2; exit 1; }
 	@scripts/need.sh $(CC) gcc "the C compiler"
+
+# What the package minvar-tests is built with.
+ceres: tools
+	@scripts/need.sh $(CXX) g++ "the C++ compiler"
+	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "the reference that curves are checked against"
 
 lib: tools
 	$(CARGO) build --locked --release -p minvar-ffi
@@ -64,9 +69,7 @@ coving: examples
 	@echo
 	@ls -l $(OUT)
 
-test: tools
-	@scripts/need.sh c++ g++ "the C++ compiler"
-	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "the reference that curves are checked against"
+test: ceres
 	MINVAR_HEADER=check $(CARGO) build --locked --release -p minvar-ffi
 	$(CARGO) test --locked --workspace --exclude minvar-ffi
 
@@ -88,24 +91,21 @@ miri: tools
 # As often as wanted: `make fuzz FUZZ=reference FUZZ_SECONDS=1800`. Exit status 1 if something is found.
 FUZZ ?=
 
-fuzz: tools
+fuzz: ceres
 	scripts/fuzz.sh $(FUZZ)
 
 sanitize: tools
 	scripts/sanitize.sh
 
 # Published / ours / Ceres for every set of Appendix A.
-table: tools
-	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "the reference that curves are checked against"
+table: ceres
 	$(CARGO) run --locked --release -p minvar-tests --bin table
 
 # Peers get the flags that are best for them; processor features beyond the baseline nobody gets.
 PEERS := target/peers
 PEER_FLAGS := -std=c++17 -Wall -Wextra -O3 -DNDEBUG -fno-math-errno
 
-peer-tools: tools
-	@scripts/need.sh $(CXX) g++ "the C++ compiler"
-	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "a peer, and the reference"
+peer-tools: ceres
 	@scripts/need.sh /usr/include/spiroentrypoints.h libspiro-dev "a peer that takes points"
 	@scripts/need.sh /usr/include/opencascade/FairCurve_MinimalVariation.hxx libocct-modeling-algorithms-dev \
 		"a peer that takes two points and tangents"
@@ -166,10 +166,9 @@ cross: cross-tools
 	@$(MAKE) --no-print-directory -k -j$(CROSS_JOBS) $(CROSS_ALL:%=cross-run-%) CROSS_FLAGS=-DWITH_LONG=1 || true
 	@scripts/cross/table.sh $(CROSS_ALL)
 
-cross-ci: cross-tools
+cross-ci: cross-tools ceres
 	@$(MAKE) --no-print-directory -k -j$(CROSS_JOBS) $(CROSS_CI:%=cross-run-%) || true
 	@scripts/cross/table.sh --short $(CROSS_CI)
-	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "what the package of tests is built with"
 	@scripts/cross/published.sh
 
 cross-run-%:
@@ -180,15 +179,13 @@ cross-hashes: tools
 	@scripts/cross/run.sh x86-64 corpus -DWITH_LONG=1
 	cp target/cross/x86-64/corpus.txt tests/cross/hashes.txt
 
-cross-curves: tools
-	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "the reference that curves are checked against"
+cross-curves: ceres
 	$(CARGO) run --locked --release -p minvar-tests --bin cross_curves >target/curves.inc
 	mv target/curves.inc tests/cross/corpus/curves.inc
 
 # Stack, instructions, code: docs/bounds.md.
-bounds: cross-tools
+bounds: cross-tools ceres
 	@scripts/need.sh valgrind valgrind "what counts instructions"
-	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "what the package of tests is built with"
 	scripts/cross/bounds.sh >target/bounds.md
 	mv target/bounds.md docs/bounds.md
 
@@ -201,20 +198,17 @@ pictures: tools
 	target/release/minvar curve tests/data/curves/peters_helix.mvc --svg docs/peters_helix.svg
 
 # Chapter 4 of the thesis, from Appendix A: one picture a figure and a page that shows them.
-figures: tools
-	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "the reference that Table 4.1 is compared with"
+figures: ceres
 	$(CARGO) run --locked --release -p minvar-tests --bin figures
 
 # All changes are woven into one copy of the kernel in target/mutants. Stopped and started again, it goes on.
-mutants: tools
-	@scripts/need.sh $(CXX) g++ "the C++ compiler"
-	@scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "the reference that curves are checked against"
+mutants: ceres
 	@command -v cargo-mutants >/dev/null || test -x target/mutants/tools/bin/cargo-mutants || \
 		$(CARGO) install --locked --version 27.1.0 --root target/mutants/tools cargo-mutants
 	PATH="$$PATH:$(CURDIR)/target/mutants/tools/bin" CARGO_TARGET_DIR=$(CURDIR)/target/mutants/tool \
 		nice $(CARGO) run --locked --release --manifest-path mutants/Cargo.toml -- $(MUTANTS)
 
-lint: tools
+lint: ceres
 	$(CARGO) fmt --all --check
 	$(CARGO) fmt --check --manifest-path fuzz/Cargo.toml
 	@$(CARGO) metadata --locked --format-version 1 --manifest-path fuzz/Cargo.toml >/dev/null || { \

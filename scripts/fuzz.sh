@@ -11,8 +11,6 @@ seconds=${FUZZ_SECONDS:-60} longest=${FUZZ_LONGEST:-60}
 target_dir=${CARGO_TARGET_DIR:-$PWD/target}
 # The compiler's features differ from one toolchain to the next, and so must its folder.
 fuzz_dir=$target_dir/fuzz
-scripts/need.sh c++ g++ "libFuzzer is C++, and so is the reference"
-scripts/need.sh /usr/include/ceres/ceres.h libceres-dev "the reference that curves are checked against"
 . scripts/unstable.sh
 PATH=$target_dir/tools/bin:$PATH
 command -v cargo-fuzz >/dev/null || {
