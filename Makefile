@@ -134,7 +134,7 @@ random: $(PEERS)/random_spiro $(PEERS)/random_occt
 		--spiro $(PEERS)/random_spiro --occt $(PEERS)/random_occt $(RANDOM)
 
 # Counted by valgrind's callgrind: no other program on the machine changes a figure.
-profile: tools
+profile: ceres
 	@scripts/need.sh valgrind valgrind "what counts instructions"
 	$(CARGO) build --locked --release -p minvar-tests --bin profile
 	@for decrease in 1e-6 1e-12; do \

@@ -269,3 +269,128 @@ pub(super) fn distance<const D: usize>(
     }
     sqrt(best)
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::*;
+    use crate::curve::joint::{Curve, Joint};
+    use crate::curve::options::Options;
+    use crate::curve::placement::Place;
+    use crate::curve::solve::model;
+    use crate::curve::start::Start;
+    use std::vec;
+    use std::vec::Vec;
+
+    const POINTS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [2.0, 1.0, 0.0], [4.0, -0.5, 0.0], [6.0, 1.5, 0.0]];
+
+    /// A curve's start with so many elements in each span, for open and closed curves.
+    fn with(counts: &[&[f64]], work: impl Fn(&Model<'_, 2>, &[Level<'_>])) {
+        let joints = POINTS.map(Joint::at);
+        for closed in [false, true] {
+            let curve = Curve { closed, ..Curve::open(&joints) };
+            let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
+            let plain = model::<2>(&curve, &Options::DEFAULT, &place);
+            let mut first = vec![0.0; plain.state_len()];
+            assert!(Start { model: &plain, place: &place, parts: 1, turned: None }.fill(&mut first).is_ok());
+            let mut memory: Vec<[Vec<f64>; 3]> = Vec::new();
+            for counts in counts {
+                let counts = counts.get(..curve.spans()).unwrap_or(counts);
+                let nodes = counts.iter().sum::<f64>() as usize + usize::from(!closed);
+                let mut marks = vec![f64::NAN; nodes + 3];
+                let mut own = counts.to_vec();
+                Level { counts: &mut own, marks: &mut marks, state: &mut [] }.mark(closed);
+                let fine = Model { division: Division::Marked(marks.part(..nodes)), ..plain };
+                let mut state = vec![f64::NAN; fine.state_len()];
+                refine(&plain, &first, |span| counts.at(span) as usize, &fine, &mut state);
+                memory.push([own, marks, state]);
+            }
+            let levels: Vec<Level<'_>> =
+                memory.iter_mut().map(|[counts, marks, state]| Level { counts, marks, state }).collect();
+            work(&plain, &levels);
+        }
+    }
+
+    #[test]
+    fn marks_say_where_the_joints_stand() {
+        with(&[&[1.0, 2.0, 4.0, 3.0]], |model, levels| {
+            let closed = model.curve.closed;
+            let wanted: &[f64] = if closed {
+                &[1.0, 2.0, 0.0, 3.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+            } else {
+                &[1.0, 2.0, 0.0, 3.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0]
+            };
+            assert_eq!(levels[0].marks, wanted);
+            assert_eq!(levels[0].elements(), if closed { 10 } else { 7 });
+            assert_eq!(levels[0].nodes(closed), if closed { 10 } else { 8 });
+            let of = levels[0].model(model);
+            assert_eq!(
+                (of.element_count(), of.node_count()),
+                (levels[0].elements(), levels[0].nodes(closed))
+            );
+        });
+    }
+
+    /// A node between two joints is moved: its span has moved by so much, and no other.
+    #[test]
+    fn a_span_that_moved_is_seen_and_by_how_much() {
+        let coarse: &[f64] = &[1.0, 2.0, 1.0, 2.0];
+        for fine in [&[2.0, 4.0, 2.0, 2.0], &[2.0, 4.0, 1.0, 4.0], &[4.0, 2.0, 2.0, 4.0]] {
+            with(&[coarse, fine], |model, levels| {
+                let [before, after] = levels else { panic!("two levels") };
+                let (old, new) = (before.model(model), after.model(model));
+                let mut errors = vec![f64::NAN; before.counts.len()];
+                compare(&old, before.counts, before.state, &new, after.counts, after.state, &mut errors);
+                assert!(errors.iter().all(|&error| error < 1e-14), "{errors:?}");
+                let mut node = 0;
+                for (moved, &count) in after.counts.iter().enumerate() {
+                    for inner in 1..count as usize {
+                        let element = node + inner;
+                        let mut state = after.state.to_vec();
+                        let normal = new.end(element, 0, &state).frame[1];
+                        let step = 1e-4;
+                        for d in 0..2 {
+                            state[Model::<2>::point_place(element) + d] += step * normal[d];
+                        }
+                        compare(&old, before.counts, before.state, &new, after.counts, &state, &mut errors);
+                        for (span, &error) in errors.iter().enumerate() {
+                            if span == moved {
+                                // Samples stand beside the node.
+                                assert!(
+                                    (0.85 * step..1.01 * step).contains(&error),
+                                    "{span} {inner}: {error}"
+                                );
+                            } else {
+                                assert!(error < 1e-14, "{span} beside {moved}: {error}");
+                            }
+                        }
+                    }
+                    node += count as usize;
+                }
+            });
+        }
+    }
+
+    #[test]
+    fn the_distance_from_an_element_is_that_of_the_nearest_place_beyond_its_ends_too() {
+        with(&[&[1.0; 4]], |model, levels| {
+            let rows = levels[0].model(model).rows(1, levels[0].state);
+            for t in [-0.02, 0.0, 0.3, 0.5, 0.94, 1.0, 1.03] {
+                let [here, first, _] = place(&rows, t);
+                let tangent = first / sqrt(first.dot(&first));
+                let normal = SVector::from([-tangent[1], tangent[0]]);
+                for off in [-0.1, 0.0, 1e-5, 0.2] {
+                    for near in [t - 0.06, t, t + 0.05] {
+                        let found = distance(&(here + normal * off), &rows, near);
+                        assert!((found - off.abs()).abs() < 1e-9, "{t} {off} {near}: {found}");
+                    }
+                }
+            }
+            // However far off: no farther than where it was first looked for.
+            let point = SVector::from([3.0, 40.0]);
+            let there = place(&rows, 0.5)[0] - point;
+            assert!(distance(&point, &rows, 0.5) <= sqrt(there.dot(&there)));
+        });
+    }
+}

@@ -16,6 +16,9 @@ use crate::solve::{BlockList, Outcome, Problem, Status, WorkspaceTooSmall};
 use crate::total::Total;
 use nalgebra::SVector;
 
+#[cfg(test)]
+mod tests;
+
 /// A violation below this part of the curve's size is none.
 const TOUCHES: f64 = 1e-9;
 /// Places an element, and on a segment, where the nearest is looked for first.

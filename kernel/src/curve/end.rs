@@ -266,3 +266,117 @@ pub(super) fn orthonormalise<const D: usize>(frame: &mut [SVector<f64, D>; D]) {
         frame[j] = row / sqrt(row.dot(&row));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::*;
+    use std::vec::Vec;
+
+    /// An end with a frame that is turned against the axes.
+    fn some<const D: usize>() -> End<D> {
+        let numbers = [0.3, -0.8, 0.5, 0.9, 0.2, 0.4, -0.1, 0.7, -0.6];
+        let mut frame: [SVector<f64, D>; D] =
+            core::array::from_fn(|j| SVector::from_fn(|d, _| numbers[3 * j + d]));
+        orthonormalise(&mut frame);
+        End {
+            point: SVector::from_fn(|d, _| 1.0 - d as f64),
+            frame,
+            curvature: core::array::from_fn(|j| [0.7, -1.1, 0.0][j]),
+            speed: 1.7,
+            stretch: -0.4,
+        }
+    }
+
+    /// An end after a step, as the curve's problem moves it.
+    fn moved<const D: usize>(end: &End<D>, steps: [(Coordinate, f64); 2]) -> End<D> {
+        let mut side: Vec<f64> = end.frame.iter().flat_map(|row| row.iter().copied()).collect();
+        side.extend(end.curvature);
+        let (mut turn, mut to, mut slide) = (SideStep::<D>::default(), *end, 0.0);
+        let mut centre = None;
+        for (coordinate, step) in steps {
+            match coordinate {
+                Coordinate::Point(d) => {
+                    to.point[d] += step;
+                    slide += step * end.frame[0][d];
+                }
+                Coordinate::Across(j) => to.point += end.normal(j) * step,
+                Coordinate::Speed => to.speed += step,
+                Coordinate::Stretch => to.stretch += step,
+                Coordinate::Roll(left) => {
+                    centre = Some((end.point + end.frame[D - 1] * left, left));
+                    turn.turn[0] += step;
+                }
+                _ => turn.note(coordinate, step),
+            }
+        }
+        to.point += end.curvature_vector() * (0.5 * slide * slide);
+        turn.apply(&mut side);
+        to.frame = core::array::from_fn(|j| SVector::from_fn(|d, _| side[D * j + d]));
+        to.curvature = core::array::from_fn(|j| side[D * D + j]);
+        if let Some((centre, left)) = centre {
+            to.point = centre - to.frame[D - 1] * left;
+        }
+        to
+    }
+
+    fn check<const D: usize>(coordinates: &[Coordinate]) {
+        let end = some::<D>();
+        let weights: [SVector<f64, D>; 3] =
+            core::array::from_fn(|a| SVector::from_fn(|d, _| [0.9, -0.3, 0.6, -0.7][(2 * a + d) % 4]));
+        let of = |steps| {
+            let [point, first, second] = moved(&end, steps).rows();
+            point.dot(&weights[0]) + first.dot(&weights[1]) + second.dot(&weights[2])
+        };
+        let h = 1e-4;
+        for (i, &one) in coordinates.iter().enumerate() {
+            let map = end.tangent_map(one);
+            let slope: f64 = map.iter().zip(&weights).map(|(row, weight)| row.dot(weight)).sum();
+            let none = (Coordinate::Speed, 0.0);
+            let found = (of([(one, h), none]) - of([(one, -h), none])) / (2.0 * h);
+            assert!((found - slope).abs() < 1e-7, "{D} {i}: {slope} {found}");
+            // What is not moved says so.
+            for (order, row) in map.iter().enumerate() {
+                assert!(one.orders().contains(&order) || row.amax() == 0.0, "{D} {i} {order}");
+            }
+            for (j, &other) in coordinates.iter().enumerate() {
+                let [point, first, second] = &weights;
+                let claimed = end.second_map(one, other, point, first, second);
+                let found = if i == j {
+                    (of([(one, h), none]) + of([(one, -h), none]) - 2.0 * of([none; 2])) / (h * h)
+                } else {
+                    let both = |a: f64, b: f64| of([(one, a * h), (other, b * h)]);
+                    (both(1.0, 1.0) - both(1.0, -1.0) - both(-1.0, 1.0) + both(-1.0, -1.0)) / (4.0 * h * h)
+                };
+                assert!((found - claimed).abs() < 1e-6, "{D} {i} {j}: {claimed} {found}");
+            }
+        }
+    }
+
+    /// First and second derivatives of a weighted sum of `P, P', P''` against differences along the steps that the solver
+    /// makes: of every coordinate and every two that go together.
+    #[test]
+    fn an_end_moves_as_its_derivatives_say() {
+        use Coordinate::{Across, Curvature, Point, Roll, Speed, Stretch, Tangent, Turn};
+        check::<2>(&[Point(0), Point(1), Tangent(0), Curvature(0), Speed, Stretch]);
+        check::<2>(&[Across(0), Tangent(0), Curvature(0), Speed, Stretch]);
+        for left in [0.6, -0.6] {
+            check::<2>(&[Roll(left), Curvature(0), Speed, Stretch]);
+        }
+        let [x, y, z] = [0, 1, 2].map(Point);
+        check::<3>(&[x, y, z, Tangent(0), Tangent(1), Curvature(0), Curvature(1), Speed, Stretch]);
+        check::<3>(&[Across(0), Across(1), Tangent(0), Tangent(1), Turn, Speed, Stretch]);
+    }
+
+    #[test]
+    fn rows_stand_where_an_end_s_derivatives_count() {
+        assert_eq!([0, 1, 2].map(|order| row_of(0, order)), [0, 1, 2]);
+        assert_eq!([0, 1, 2].map(|order| row_of(1, order)), [0, 4, 3]);
+        let [before, after] =
+            [some::<3>(), moved(&some::<3>(), [(Coordinate::Speed, 1.0), (Coordinate::Point(0), 2.0)])];
+        let rows = rows_between(&[before, after]);
+        let ([p0, v0, a0], [p1, v1, a1]) = (before.rows(), after.rows());
+        assert_eq!(rows, [p0, v0, a0, a1, v1, p1]);
+    }
+}

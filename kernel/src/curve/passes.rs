@@ -114,7 +114,7 @@ impl<'a> Passes<'a> {
     }
 
     /// Leaves only so many iterations.
-    fn hurry(&mut self, iterations: usize) {
+    pub(super) fn hurry(&mut self, iterations: usize) {
         self.hurries = true;
         self.most = self.most.min(self.iterations + iterations);
     }

@@ -13,6 +13,9 @@ use crate::root::sqrt;
 use crate::solve::{Outcome, Problem, Status};
 use crate::total::Total;
 
+#[cfg(test)]
+mod tests;
+
 /// How a curve came out. All figures in the caller's units; of a shape that has grown beyond the arithmetic they are
 /// infinite, none is NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
