@@ -66,3 +66,105 @@ fn farthest(curve: &Curve<'_>, options: &Options) -> Option<[usize; 2]> {
     }
     (found.0 > 0).then_some([0, found.0])
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::*;
+    use crate::curve::functional::Functional;
+    use crate::curve::obstacle::{Obstacle, Side};
+    use crate::curve::placement::Place;
+    use crate::curve::solve::model;
+    use crate::curve::start::Start;
+    use crate::solve::Problem;
+    use std::vec;
+
+    /// Joints that are where they begin.
+    fn joints<const N: usize>(points: [[f64; 3]; N]) -> [Joint; N] {
+        points.map(|point| Joint::at(point).with_position(Quantity::initial(point)))
+    }
+
+    const EIGHT: [[f64; 3]; 6] = [
+        [0.0, 0.0, 0.0],
+        [2.0, 1.0, 0.0],
+        [3.0, 0.0, 0.0],
+        [2.0, -1.0, 0.0],
+        [-2.0, 1.0, 0.0],
+        [-2.0, -1.0, 0.0],
+    ];
+    const SI: Options = Options { functional: Functional::SI_MVC, ..Options::DEFAULT };
+
+    #[test]
+    fn two_joints_hold_only_what_nothing_holds() {
+        let free = joints(EIGHT);
+        let of = |joints: &[Joint], options: &Options| farthest(&Curve::new(joints, true), options);
+        assert_eq!(of(&free, &SI), Some([0, 2]));
+        assert_eq!(of(&free, &Options { functional: Functional::SI_MEC, ..SI }), Some([0, 2]));
+        // A functional or a length that knows a size.
+        assert_eq!(of(&free, &Options::DEFAULT), None);
+        assert_eq!(of(&free, &Options { length: 3.0, ..SI }), None);
+        let obstacles = [Obstacle::point([0.0, 9.0, 0.0], 1.0, Side::LEFT)];
+        assert_eq!(farthest(&Curve::new(&free, true).with_obstacles(&obstacles), &SI), None);
+        for k in 0..free.len() {
+            let with = |joint: Joint| {
+                let mut joints = free;
+                joints[k] = joint;
+                of(&joints, &SI)
+            };
+            let value = [1.0, 2.0, 0.0];
+            assert_eq!(with(Joint::at(EIGHT[k])), None, "{k}");
+            assert_eq!(with(free[k].on_line(EIGHT[k], value)), None, "{k}");
+            for side in 0..2 {
+                let mut fixed = free[k];
+                fixed.tangent[side] = Quantity::fixed(value);
+                assert_eq!(with(fixed), None, "{k} {side}");
+                let mut fixed = free[k];
+                fixed.curvature[side] = Quantity::of_size(value);
+                assert_eq!(with(fixed), None, "{k} {side}");
+            }
+            let hinted =
+                free[k].with_tangent(Quantity::initial(value)).with_curvature(Quantity::initial(value));
+            assert_eq!(with(hinted), Some([0, 2]), "{k}");
+            // A joint without a place is no anchor.
+            let nowhere = with(free[k].with_position(Quantity::FREE));
+            assert_eq!(
+                nowhere,
+                [None, Some([0, 2]), Some([0, 1]), Some([0, 2]), Some([0, 2]), Some([0, 2])][k]
+            );
+        }
+        // By all three coordinates.
+        let deep =
+            joints([[1.0, 2.0, 3.0], [2.0, 1.0, 4.0], [1.0, 2.0, 5.5], [3.2, 2.0, 3.0], [1.0, 4.4, 3.0]]);
+        assert_eq!(of(&deep, &SI), Some([0, 2]));
+        let heap = joints([[1.0; 3]; 3]);
+        assert_eq!(of(&heap, &SI), None);
+    }
+
+    #[test]
+    fn only_a_curve_that_does_not_turn_in_all_is_held() {
+        let anchored = |points: &[Joint], closed: bool| {
+            let curve = Curve::new(points, closed);
+            let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
+            let model = model::<2>(&curve, &SI, &place);
+            let mut state = vec![0.0; model.state_len()];
+            assert!(Start { model: &model, place: &place, parts: 1, turned: None }.fill(&mut state).is_ok());
+            anchors(&model, &SI, &state)
+        };
+        let eight = joints(EIGHT);
+        assert_eq!(anchored(&eight, true), Some([0, 2]));
+        assert_eq!(anchored(&eight, false), None);
+        let round = joints([[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.0, 1.5, 0.0]]);
+        assert_eq!(anchored(&round, true), None);
+        let mut back = round;
+        back.reverse();
+        assert_eq!(anchored(&back, true), None);
+        let deep = joints([[0.0, 0.0, 0.0], [2.0, 0.0, 0.5], [2.0, 1.0, 0.0], [0.0, 1.5, 1.0]]);
+        let curve = Curve::new(&deep, true);
+        let Ok(Place::Space(place)) = Place::of(&curve, 1.0, 0) else { panic!("data in space") };
+        let model = model::<3>(&curve, &SI, &place);
+        let mut state = vec![0.0; model.state_len()];
+        assert!(Start { model: &model, place: &place, parts: 1, turned: None }.fill(&mut state).is_ok());
+        assert_eq!(anchors(&model, &SI, &state), None);
+    }
+}

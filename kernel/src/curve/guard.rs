@@ -51,3 +51,63 @@ impl<const D: usize> Guard<D> {
         self.good && self.last.is_none_or(|last| Self::forward(&last[0], &last[1]))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether a curve with these derivatives at the points of a rule, in their order, passes. Points are looked at from
+    /// both ends, `WIDTH` pairs at a time; lanes behind the last pair hold what nobody may look at.
+    fn passes<const N: usize>(firsts: [[f64; 2]; N]) -> bool {
+        let pairs = N / 2;
+        let mut guard = Guard::<2>::of(pairs);
+        for begin in (0..pairs).step_by(WIDTH) {
+            let lane = |end: usize, d: usize| {
+                Lanes(core::array::from_fn(|lane| {
+                    let pair = begin + lane;
+                    if pair >= pairs {
+                        return f64::NAN;
+                    }
+                    firsts[if end == 0 { pair } else { N - 1 - pair }][d]
+                }))
+            };
+            guard.pass(&[0, 1].map(|end| [0, 1].map(|d| lane(end, d))));
+        }
+        guard.ends_well()
+    }
+
+    #[test]
+    fn a_curve_that_turns_back_or_stops_between_any_two_points_does_not_pass() {
+        const N: usize = 10;
+        let even: [[f64; 2]; N] = core::array::from_fn(|k| {
+            let angle = 0.9 * k as f64;
+            [2.0 * libm::cos(angle), 2.0 * libm::sin(angle)]
+        });
+        assert!(passes(even));
+        for k in 1..N {
+            // From this point on it runs the other way, across, or a little less than across.
+            let turned = |sine: f64, cosine: f64| {
+                let mut firsts = even;
+                for later in k..N {
+                    let [x, y] = firsts[later];
+                    firsts[later] = [cosine * x - sine * y, sine * x + cosine * y];
+                }
+                passes(firsts)
+            };
+            assert!(!turned(0.0, -1.0) && !turned(libm::sin(1.0), libm::cos(1.0)), "{k}");
+            assert!(
+                turned(libm::sin(0.6), libm::cos(0.6)) && turned(libm::sin(-2.4), libm::cos(-2.4)),
+                "{k}"
+            );
+            // Or is so many times as fast.
+            for (factor, good) in [(90.0, true), (1.0 / 90.0, true), (110.0, false), (1.0 / 110.0, false)] {
+                let mut firsts = even;
+                firsts[k..].iter_mut().flatten().for_each(|x| *x *= factor);
+                assert_eq!(passes(firsts), good, "{k} {factor}");
+            }
+        }
+        let mut stops = even;
+        stops[4] = [0.0; 2];
+        assert!(!passes(stops));
+    }
+}

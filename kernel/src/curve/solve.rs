@@ -538,6 +538,61 @@ mod tests {
         }
     }
 
+    /// A continuation is one minimisation after the other, under a tension that outweighs the functional ten times, once,
+    /// and by a tenth; then the tension is what it was.
+    #[test]
+    fn a_continuation_lets_go_by_tens() {
+        let joints = [
+            Joint::at([0.0, 0.0, 0.0]).with_tangent(Quantity::fixed([-0.5, 1.0, 0.0])),
+            Joint::at([1.0, 0.4, 0.0]),
+            Joint::at([1.5, -0.4, 0.0]).with_tangent(Quantity::fixed([-1.0, -1.0, 0.0])),
+        ];
+        let curve = Curve::open(&joints);
+        let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
+        let options = Options { tension: 0.25, ..Options::DEFAULT };
+        let begin = || {
+            let mut model = model::<2>(&curve, &options, &place);
+            let mut state = [0.0; 56];
+            let start = Start { model: &model, place: &place, parts: 1, turned: None };
+            model.natural_cost = start.fill(&mut state).unwrap_or(f64::NAN);
+            model.start_length = model.rough_length(&state);
+            (model, state)
+        };
+        let mut work = [0.0; 4000];
+        let mut few = Few(usize::MAX);
+        for (stages, most) in [(0, usize::MAX), (1, usize::MAX), (3, usize::MAX), (3, 2)] {
+            let (mut model, mut state) = begin();
+            few.0 = most;
+            let mut passes = Passes::new(&mut few, &mut [], 1.0, 500, None);
+            assert!(under_tension(&mut passes, &mut model, stages, &mut state, &mut work).is_ok());
+            let taken = passes.iterations;
+            assert_eq!(model.weights.length, 0.25);
+
+            let (mut model, mut wanted) = begin();
+            few.0 = most;
+            let mut passes = Passes::new(&mut few, &mut [], 1.0, 500, None);
+            for pull in [10.0, 1.0, 0.1].into_iter().take(if most == 2 { 1 } else { stages as usize }) {
+                model.weights.length = 0.25 + pull * model.natural_cost / model.start_length;
+                assert!(passes.shape_and_finish(&mut model, 1e-4, &mut wanted, &mut work).is_ok());
+            }
+            assert_eq!(taken, passes.iterations);
+            assert!(stages == 0 || (taken > 2) == (most > 2), "{stages}: {taken}");
+            for (number, wanted) in state.iter().zip(&wanted) {
+                assert!((number - wanted).abs() < 1e-9, "{stages} {most}: {number} {wanted}");
+            }
+        }
+    }
+
+    /// Asks to stop after so many iterations.
+    struct Few(usize);
+
+    impl Observer for Few {
+        fn iteration(&mut self, _: usize, _: &Record) -> crate::solve::Control {
+            self.0 -= 1;
+            if self.0 == 0 { crate::solve::Control::Cancel } else { crate::solve::Control::Continue }
+        }
+    }
+
     #[test]
     fn an_element_that_knows_torsion_has_the_derivatives_of_its_cost() {
         let joints = [
