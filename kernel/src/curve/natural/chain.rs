@@ -11,6 +11,9 @@ use crate::solve::{Allow, Envelope, Indices, dot};
 use crate::total::Total;
 use nalgebra::SVector;
 
+#[cfg(test)]
+mod tests;
+
 /// The most unknowns of a joint: direction and curvature on either side.
 const MOST_A_JOINT: usize = 4;
 /// The longest row of the matrix that an open chain needs.

@@ -15,6 +15,9 @@ use crate::curve::fairness::{curvature_with_derivatives, slope_with_derivatives}
 use crate::order::Order;
 use crate::root::sqrt;
 
+#[cfg(test)]
+mod tests;
+
 /// Points of the rule by which curves are compared.
 const POINTS: usize = 8;
 const PAIRS: usize = POINTS / WIDTH;

@@ -179,3 +179,166 @@ impl TrueCurve<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::super::{Wish, improve};
+    use super::*;
+    use crate::curve::functional::Functional;
+    use crate::curve::joint::{Curve, Joint};
+    use crate::curve::model::Division;
+    use crate::curve::options::Options;
+    use crate::curve::placement::Place;
+    use crate::curve::solve::model;
+    use crate::curve::start::Start;
+    use crate::solve::Problem;
+    use nalgebra::SVector;
+    use std::vec;
+    use std::vec::Vec;
+
+    const POINTS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 2.0, 0.0], [3.2, 2.4, 0.0], [4.0, 0.2, 0.0]];
+    const COUNTS: [f64; 4] = [2.0, 1.0, 4.0, 3.0];
+
+    /// The way along a true curve to a place of a span, by many small steps.
+    fn walked(q: &[f64; FINE_FUNCTIONS], u: f64, length: f64) -> [f64; 2] {
+        const STEPS: usize = 4000;
+        let mut sums = [0.0; 2];
+        for k in 0..STEPS {
+            let [theta, _] = direction(q, u * (k as f64 + 0.5) / STEPS as f64);
+            sums[0] += libm::cos(theta);
+            sums[1] += libm::sin(theta);
+        }
+        sums.map(|sum| sum * u * length / STEPS as f64)
+    }
+
+    /// The start values that a true curve is found from.
+    fn begin(model: &Model<'_, 2>, parts: usize) -> Vec<f64> {
+        let mut state = vec![0.0; model.state_len()];
+        let start = Start { model, place: &model.place, parts, turned: None };
+        assert!(start.fill(&mut state).is_ok());
+        let (joints, spans) = (model.curve.joints.len(), model.curve.spans());
+        let mut memory = vec![f64::NAN; memory_len(6, joints, spans, model.curve.closed)];
+        let wish = Wish { length: None, bent: None, warm: false, enough: 1e-9 };
+        improve(model, &wish, &mut state, &mut memory, &mut |_, _| true);
+        state
+    }
+
+    #[test]
+    fn elements_along_a_true_curve_have_its_places_directions_and_curvatures() {
+        let joints = POINTS.map(Joint::at);
+        for (closed, functional) in [
+            (false, Functional::MVC),
+            (true, Functional::MVC),
+            (false, Functional::MEC),
+            (true, Functional::SI_MVC),
+        ] {
+            let curve = Curve { closed, ..Curve::open(&joints) };
+            let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
+            let options = Options { functional, ..Options::DEFAULT };
+            let coarse = model::<2>(&curve, &options, &place);
+            let coarse_state = begin(&coarse, 1);
+            let mut memory = vec![f64::NAN; trace_len(4, curve.spans(), closed)];
+            let found = trace(&coarse, None, &coarse_state, None, &mut memory, &mut |_, _| true);
+            let Some(found) = found else { panic!("it settles") };
+
+            let counts = &COUNTS[..curve.spans()];
+            let mut marks: Vec<f64> = Vec::new();
+            for (span, &count) in counts.iter().enumerate() {
+                marks.push((span + 1) as f64);
+                marks.extend(vec![0.0; count as usize - 1]);
+            }
+            if !closed {
+                marks.push((counts.len() + 1) as f64);
+            }
+            let fine = Model { division: Division::Marked(&marks), ..coarse };
+            let mut state = vec![f64::NAN; fine.state_len()];
+            let parts = counts.iter().map(|&count| count as usize);
+            let natural = found.write(&coarse, &coarse_state, &fine, parts, &mut state);
+
+            let (mut element, mut costs) = (0, 0.0);
+            let mut farthest = Vec::new();
+            for (index, &count) in counts.iter().enumerate() {
+                let span = found.chain.span(index);
+                let (q, length) = (span.coefficients(), span.length());
+                let from = SVector::<f64, 2>::from([POINTS[index][0], POINTS[index][1]]);
+                let to = POINTS[(index + 1) % 4];
+                let along = (SVector::from([to[0], to[1]]) - from) / span.chord;
+                let at = |u: f64| from + turned(&along, walked(&q, u, length));
+                for part in 0..count as usize {
+                    for end in 0..2 {
+                        let u = (part + end) as f64 / count;
+                        let this = fine.end(element, end, &state);
+                        assert!((this.point - at(u)).amax() < 1e-6, "{index} {part} {end}");
+                        let [theta, slope] = direction(&q, u);
+                        let tangent = turned(&along, [libm::cos(theta), libm::sin(theta)]);
+                        assert!((this.frame[0] - tangent).amax() < 1e-9, "{index} {part} {end}");
+                        assert!((this.frame[1] - SVector::from([-tangent[1], tangent[0]])).amax() < 1e-9);
+                        assert!((this.curvature[0] - slope / length).abs() < 1e-8, "{index} {part} {end}");
+                    }
+                    costs += fine.natural_of(length / count);
+                    element += 1;
+                }
+                farthest.push((0..40).map(|k| at((f64::from(k) + 0.5) / 40.0)).collect::<Vec<_>>());
+            }
+            assert!((natural - costs).abs() < 1e-12 * costs, "{natural} {costs}");
+
+            // How far the elements are: as far as what is drawn in small steps, and as a node that is moved.
+            let mut errors = vec![f64::NAN; counts.len()];
+            found.distances(&coarse, &coarse_state, &fine, counts, &state, &mut errors);
+            let mut first = 0;
+            for (index, &count) in counts.iter().enumerate() {
+                let mut most = 0.0f64;
+                for (k, point) in farthest[index].iter().enumerate() {
+                    let place = (k as f64 + 0.5) / 40.0 * count;
+                    let part = libm::floor(place);
+                    let rows = fine.rows(first + part as usize, &state);
+                    most = most.larger(distance(point, &rows, place - part));
+                }
+                // Small steps are right to some 1e-8; samples are not the farthest places.
+                let found = errors[index];
+                assert!(found < 1.6 * most + 1e-7 && found > 0.6 * most - 1e-7, "{index}: {found} {most}");
+                first += count as usize;
+            }
+            let mut node = 0;
+            for (moved, &count) in counts.iter().enumerate() {
+                for inner in node + 1..node + count as usize {
+                    let mut state = state.clone();
+                    let normal = fine.end(inner, 0, &state).frame[1];
+                    (0..2).for_each(|d| state[Model::<2>::point_place(inner) + d] += 0.01 * normal[d]);
+                    let mut now = errors.clone();
+                    found.distances(&coarse, &coarse_state, &fine, counts, &state, &mut now);
+                    for (span, (now, before)) in now.iter().zip(&errors).enumerate() {
+                        let wanted = if span == moved { 0.0085..0.0125 } else { 0.0..1e-9 };
+                        let off = if span == moved { *now } else { (now - before).abs() };
+                        assert!(wanted.contains(&off), "{span} beside {moved}: {now} {before}");
+                    }
+                }
+                node += count as usize;
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_not_planar_through_fixed_joints_has_no_true_curve() {
+        let joints = POINTS.map(Joint::at);
+        let mut slides = joints;
+        slides[1] = slides[1].on_line(POINTS[1], [0.0, 1.0, 0.0]);
+        for (joints, division, traced) in [(joints, 1, true), (joints, 2, false), (slides, 1, false)] {
+            let curve = Curve::open(&joints);
+            let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
+            let plain = model::<2>(&curve, &Options::DEFAULT, &place);
+            let model = Model { division: Division::Even(division), ..plain };
+            let state = begin(&model, division);
+            let mut memory = vec![f64::NAN; trace_len(4, 3, false)];
+            let of = |memory: &mut [f64], goes_on: bool| {
+                trace(&model, None, &state, None, memory, &mut |_, _| goes_on).is_some()
+            };
+            assert_eq!(of(&mut memory, true), traced);
+            assert!(!of(&mut memory, false));
+            let short = memory.len() - 1;
+            assert!(!of(&mut memory[..short], true));
+        }
+    }
+}
