@@ -192,9 +192,8 @@ fn plane_axes(curve: &Curve<'_>, origin: &Vector3<f64>) -> Option<[Vector3<f64>;
         }
     }
     // The longest offset is one axis; the vector farthest from it shows the other.
-    let (mut first, mut rounding) = (Vector3::zeros(), 0.0f64);
+    let mut first = Vector3::zeros();
     vectors(curve, origin, f64::INFINITY, |vector, error| {
-        rounding = rounding.larger(error);
         if error > 0.0 && vector.dot(&vector) > first.dot(&first) {
             first = vector;
         }
@@ -223,8 +222,8 @@ fn plane_axes(curve: &Curve<'_>, origin: &Vector3<f64>) -> Option<[Vector3<f64>;
     let normal = first.cross(&second);
     let mut flat = true;
     vectors(curve, origin, extent, |vector, error| {
-        // Directions are exact, but the plane leans by the rounding of the points that it is laid through.
-        let allowed = if error > 0.0 { error + FLATNESS * extent } else { FLATNESS + rounding / extent };
+        // A plane that leans by the rounding of its points would turn directions that are given exactly: space keeps them.
+        let allowed = if error > 0.0 { error + FLATNESS * extent } else { FLATNESS };
         flat &= normal.dot(&vector).abs() <= allowed;
     });
     // Right-handed about the normal that points along the positive side of its largest coordinate.
