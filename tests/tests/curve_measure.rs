@@ -274,6 +274,36 @@ fn the_plane_of_a_planar_chain_is_found_and_a_space_curve_has_none() {
     assert_abs_diff_eq!(norm(found), 1.0, epsilon = 1e-14);
 }
 
+/// A chain that is turned has its extremes of curvature at the same places, signed by a normal of which the largest
+/// coordinate is positive.
+#[test]
+fn a_tilted_plane_has_the_extremes_of_curvature_of_a_level_one() {
+    let level = solved(false, false);
+    let wanted = curvature_range(&level).expect("a regular chain");
+    for normal in [[0.3, -0.4, 0.9], [0.8, 0.3, -0.2], [-0.3, 0.7, 0.5], [0.6, 0.59, 0.58], [0.9, -0.1, 0.3]]
+    {
+        let normal = unit(normal);
+        let first = unit(cross(normal, [0.6, -0.64, 0.48]));
+        let second = cross(normal, first);
+        let turned: Vec<Element> = level
+            .iter()
+            .map(|element| Element {
+                rows: element
+                    .rows
+                    .map(|[x, y, z]| std::array::from_fn(|d| x * first[d] + y * second[d] + z * normal[d])),
+            })
+            .collect();
+        let found = curvature_range(&turned).expect("a regular chain");
+        for (found, wanted) in found.iter().zip(&wanted) {
+            assert_eq!(found.element, wanted.element, "{normal:?}");
+            assert!((found.parameter - wanted.parameter).abs() < 1e-6, "{normal:?}: {}", found.parameter);
+            let [x, y, _] = wanted.curvature;
+            let bend = add(times(first, x), times(second, y));
+            assert!(distance(found.curvature, bend) < 1e-7, "{normal:?}: {:?} {bend:?}", found.curvature);
+        }
+    }
+}
+
 #[test]
 fn a_power_of_two_changes_no_digit_of_any_figure() {
     for elements in chains() {

@@ -364,3 +364,24 @@ fn bad_input_and_interruptions_are_told() {
         CurveError::BadOption(OptionName::Functional)
     );
 }
+
+/// A curvature of which only the size is kept may turn about the tangent; one of nothing has no direction to turn to.
+#[test]
+fn a_curvature_of_given_size_is_one_unknown_and_none_is_none() {
+    let mut joints = [[0.0, 0.0, 0.0], [1.0, 0.8, 0.2], [2.0, 1.0, 0.6], [3.0, 0.6, 0.8]].map(Joint::at);
+    joints[0] = joints[0].with_tangent(Quantity::fixed([0.8, 1.0, 0.0]));
+    joints[3] = joints[3].with_tangent(Quantity::fixed([1.0, -0.8, 0.0]));
+    let unknowns = |joints: &[Joint]| {
+        let (report, _) = solve_curve(joints, false, &Options::DEFAULT).expect("good data");
+        assert_eq!((report.status, report.planar), (Status::Converged, false));
+        report.unknowns
+    };
+    let free = unknowns(&joints);
+    for (value, less) in [([0.0, 0.0, 0.3], 1), ([0.0; 3], 2)] {
+        for quantity in [Quantity::of_size(value), Quantity::fixed(value)] {
+            let mut given = joints;
+            given[1] = given[1].with_curvature(quantity);
+            assert_eq!(unknowns(&given), free - less, "{quantity:?}");
+        }
+    }
+}

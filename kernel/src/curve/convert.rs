@@ -109,3 +109,37 @@ pub fn bspline(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// However long the tangents are, and wherever they point.
+    #[test]
+    fn a_joint_is_smooth_where_tangents_differ_by_next_to_nothing() {
+        let directions: [[f64; 3]; 4] =
+            [[1.0, 1.0, 1.0], [0.0, -2.0, 0.0], [3.0, -1.0, 0.5], [-1.0, 1.0, -1.0]];
+        for direction in directions {
+            let along = Vector3::from(direction);
+            let along = along / sqrt(along.dot(&along));
+            let across = along.cross(&Vector3::new(0.6, 0.64, 0.48));
+            let across = across / sqrt(across.dot(&across));
+            for (size, other) in [(1.0, 1.0), (1e-200, 1e200), (1e6, 0.3)] {
+                for (angle, smooth) in
+                    [(0.0, true), (0.95e-9, true), (-0.95e-9, true), (1.05e-9, false), (0.1, false)]
+                {
+                    let mut chain = [Element::ZERO; 2];
+                    chain[0].rows[4] = (along * size).into();
+                    chain[1].rows[1] = ((along + across * angle) * other).into();
+                    assert_eq!(smooth_after(&chain, 0), smooth, "{direction:?} {size} {angle}");
+                    chain[1].rows[1] = ((along + across * angle) * -other).into();
+                    assert!(!smooth_after(&chain, 0), "it turns back");
+                    chain[1].rows[1] = chain[0].rows[4];
+                    chain[1].rows[0] = [0.0, 0.0, 1e-300];
+                    assert!(!smooth_after(&chain, 0), "there is a gap");
+                }
+            }
+        }
+        assert!(!smooth_after(&[Element::ZERO; 1], 0));
+    }
+}

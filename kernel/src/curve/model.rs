@@ -1017,3 +1017,56 @@ const SKEWS: [f64; 3] = [0.15, -0.15, 0.0];
 const LEAST_SPEED: f64 = 0.02;
 /// A curve that became longer than its start by this factor grows without limit.
 const RUNAWAY: f64 = 100.0;
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::*;
+    use crate::curve::joint::Quantity;
+    use crate::curve::options::Options;
+    use crate::curve::placement::Place;
+    use crate::curve::solve::model;
+    use crate::curve::start::Start;
+    use std::vec;
+
+    /// A free point that slides along its curve follows the osculating parabola; beside the curve it goes straight.
+    fn slides<const D: usize>(model: &Model<'_, D>)
+    where
+        Shape<D>: Density<D>,
+    {
+        let mut state = vec![0.0; model.state_len()];
+        assert!(Start { model, place: &model.place, parts: 1, turned: None }.fill(&mut state).is_ok());
+        for node in 0..model.node_count() {
+            let (element, end) = if node == model.element_count() { (node - 1, 1) } else { (node, 0) };
+            let was = model.end(element, end, &state);
+            let curvature = was.curvature_vector();
+            assert!(node == 0 || node == model.element_count() || curvature.amax() > 0.1, "{node}");
+            let range = model.state_range(node);
+            let step: SVector<f64, D> = SVector::from_fn(|d, _| 0.3 - 0.2 * d as f64);
+            let mut all = vec![0.0; model.dofs(node)];
+            all[..D].copy_from_slice(step.as_slice());
+            let mut moved = state.clone();
+            model.retract(node, &state[range.clone()], &all, &mut moved[range]);
+            let is = model.end(element, end, &moved);
+            let slide = step.dot(&was.frame[0]);
+            let wanted = was.point + step + curvature * (0.5 * slide * slide);
+            assert!((is.point - wanted).amax() < 1e-14, "{node}: {} {wanted}", is.point);
+            assert!(is.frame == was.frame && is.curvature == was.curvature);
+        }
+    }
+
+    #[test]
+    fn a_free_point_slides_along_its_osculating_parabola() {
+        let points = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 0.5, 0.0], [2.5, -1.0, 0.0]];
+        let joints = points.map(|point| Joint::at(point).with_position(Quantity::initial(point)));
+        let curve = Curve::open(&joints);
+        let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
+        slides(&model::<2>(&curve, &Options::DEFAULT, &place));
+        let mut deep = joints;
+        deep[2].position.value[2] = 0.8;
+        let curve = Curve::open(&deep);
+        let Ok(Place::Space(place)) = Place::of(&curve, 1.0, 0) else { panic!("data in space") };
+        slides(&model::<3>(&curve, &Options::DEFAULT, &place));
+    }
+}

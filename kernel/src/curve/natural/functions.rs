@@ -210,6 +210,28 @@ mod tests {
         }
     }
 
+    /// The direction's derivatives, by recurrences of their own: those of the functions, and a difference of the last.
+    #[test]
+    fn slopes_are_the_derivatives_of_the_direction() {
+        let q: [f64; FINE_FUNCTIONS] =
+            core::array::from_fn(|i| if i % 3 == 0 { 0.5 - i as f64 } else { 1.0 / (1.0 + i as f64) });
+        let h = 1e-6;
+        for step in 0..=16 {
+            let u = [f64::from(step) / 20.0, 0.1 + f64::from(step) / 20.0];
+            let found = slopes(&q, Lanes(u));
+            for lane in 0..2 {
+                let of = |u: f64, order: usize| {
+                    functions::<FINE_FUNCTIONS>(u)[order].iter().zip(&q).map(|(f, q)| f * q).sum::<f64>()
+                };
+                let u = u[lane];
+                let third = (of(u + h, 2) - of(u - h, 2)) / (2.0 * h);
+                assert!((found[0].0[lane] - of(u, 1)).abs() < 1e-11, "{u}");
+                assert!((found[1].0[lane] - of(u, 2)).abs() < 1e-11, "{u}");
+                assert!((found[2].0[lane] - third).abs() < 1e-4 * (1.0 + third.abs()), "{u}: {third}");
+            }
+        }
+    }
+
     #[test]
     fn bends_are_orthogonal_beyond_the_cubics() {
         for i in 4..FINE_FUNCTIONS {
