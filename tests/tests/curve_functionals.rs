@@ -2,8 +2,8 @@
 //! what must hold of them.
 
 use minvar::curve::{
-    Curve, CurveError, Element, Functional, Joint, LENGTH_TRUSTED, Obstacle, OptionName, Options, Quantity,
-    Reference, Report, Side, elements_len, measure, minima, solve, update, workspace_len,
+    Curve, CurveError, Element, Functional, Given, Joint, LENGTH_TRUSTED, Obstacle, OptionName, Options,
+    Quantity, Reference, Report, Side, elements_len, measure, minima, solve, update, workspace_len,
 };
 use minvar::solve::{Record, Silent, Status};
 use minvar_tests::curves::{add, cross, deviation, distance, solve_curve, times, unit};
@@ -827,6 +827,40 @@ fn a_closed_curve_with_obstacles_does_not_know_where_it_begins() {
             }
         }
     }
+}
+
+/// A joint that is free to slide along the curve goes down with its elements; with contacts it has as much room for that.
+#[test]
+fn a_curve_with_free_joints_keeps_clear_of_its_obstacles() {
+    for closed in [false, true] {
+        for given in [2, 3] {
+            let mut joints = even_joints(6);
+            for joint in joints.iter_mut().skip(1).step_by(given) {
+                joint.position.given = Given::INITIAL;
+            }
+            let (_, free) = solve_curve(&joints, closed, &Options::DEFAULT).expect("good data");
+            let place = measure::at(&free, 2, 0.4).expect("a place");
+            for side in [Side::LEFT, Side::RIGHT] {
+                let obstacles = [Obstacle::point(place.point, 0.03, side)];
+                let curve = Curve::new(&joints, closed).with_obstacles(&obstacles);
+                let (report, elements) = solved(&curve, &Options::DEFAULT);
+                assert_eq!(report.status, Status::Converged, "{closed} {given} {side:?}");
+                let left = to_the_left(&elements, place.point);
+                let clear = if side == Side::LEFT { left } else { -left };
+                assert!(clear > 0.03 - 1e-7, "{closed} {given} {side:?}: {clear}");
+            }
+        }
+    }
+}
+
+/// Joints around an oval.
+fn even_joints(count: usize) -> Vec<Joint> {
+    (0..count)
+        .map(|k| {
+            let angle = k as f64 * std::f64::consts::TAU / count as f64;
+            Joint::at([2.0 * angle.cos(), 1.5 * angle.sin(), 0.0])
+        })
+        .collect()
 }
 
 #[test]

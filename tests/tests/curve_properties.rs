@@ -817,3 +817,37 @@ fn initial_values_are_start_values_only() {
     let ends: Vec<Element> = fewer[2..].to_vec();
     assert!(deviation(&ends, &found[1..], 1) < 1e-4);
 }
+
+/// The README's table of memory: bytes of workspace and of elements.
+#[test]
+fn memory_is_what_the_readme_says() {
+    let coving = [
+        Joint::at([0.5, -12.0, 0.0])
+            .with_tangent(Quantity::fixed([0.0, 1.0, 0.0]))
+            .with_curvature(Quantity::fixed([0.27, 0.0, 0.0])),
+        Joint::at([20.0, -0.5, 0.0]).with_tangent(Quantity::fixed([1.0, 0.0, 0.0])),
+    ];
+    let points = [[0.0, 0.0], [1.0, 1.9], [2.0, 2.7], [3.0, 2.6], [4.0, 1.6], [5.0, 0.89], [6.0, 1.2]];
+    let planar = points.map(|[x, y]| Joint::at([x, y, 0.0]));
+    let space: [Joint; 7] =
+        std::array::from_fn(|i| Joint::at([points[i][0], points[i][1], 0.3 * (i * i) as f64]));
+    let readme =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../README.md")).expect("README.md");
+    for (name, joints, elements_per_span) in [
+        ("2 joints, planar", &coving[..], 1),
+        ("2 joints, planar, 8 elements", &coving[..], 8),
+        ("7 joints, planar", &planar[..], 1),
+        ("7 joints, space", &space[..], 1),
+    ] {
+        let row = readme.lines().find(|line| line.starts_with(&format!("| {name} |"))).expect(name);
+        let told = |column: usize| -> usize {
+            let cell = row.split('|').nth(column).expect("a cell");
+            cell.chars().filter(char::is_ascii_digit).collect::<String>().parse().expect("a number")
+        };
+        let (curve, options) = (Curve::open(joints), Options { elements_per_span, ..Options::DEFAULT });
+        assert_eq!(workspace_len(&curve, &options).expect("good data") * 8, told(3), "{name}");
+        assert_eq!(elements_len(&curve, &options) * size_of::<Element>(), told(4), "{name}");
+        let (report, _) = solve_curve(joints, false, &options).expect("good data");
+        assert_eq!(report.unknowns, told(2), "{name}");
+    }
+}
