@@ -1,3 +1,5 @@
+//! Feet, worst places, pulls and insertions against brute force, differences, and the curve as it was.
+
 extern crate std;
 
 use super::*;

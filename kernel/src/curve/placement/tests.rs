@@ -1,3 +1,5 @@
+//! Where data lie in a plane and where not, and what becomes of every kind of vector there.
+
 extern crate std;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! What status comes of how a curve grew, and of what its figures say.
+
 extern crate std;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Settled chains of every kind of joint: stationary in all that is free, with the rest kept.
+
 extern crate std;
 
 use super::super::functions::{COARSE, FINE};

@@ -1,3 +1,5 @@
+//! The fit against residuals by plain formulas.
+
 extern crate std;
 
 use super::super::functions::functions;
