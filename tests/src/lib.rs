@@ -13,6 +13,7 @@ pub mod iterations;
 pub mod kinds;
 pub mod paths;
 pub mod random;
+pub mod solving;
 pub mod stack;
 pub mod toolchain;
 pub mod truth;

@@ -4,14 +4,14 @@ use minvar::solve::{
     BlockList, Control, Executor, InOrder, Observer, Outcome, Problem, Record, Settings, Silent, Status,
     Task, WorkspaceTooSmall, minimise, packed, workspace_len,
 };
+use minvar_tests::solving;
 use minvar_tests::valley::{Rosenbrock, rosenbrock_start};
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Solves in a workspace of exactly the right length, full of NaN.
 fn run<P: Problem>(problem: &P, settings: &Settings, executor: &dyn Executor, state: &mut [f64]) -> Outcome {
-    let mut workspace = vec![f64::NAN; workspace_len(problem, executor.width())];
-    minimise(problem, settings, executor, state, &mut workspace, &mut [], &mut Silent).expect("enough memory")
+    solving::run(problem, settings, executor, &mut Silent, state).0
 }
 
 #[test]

@@ -2,9 +2,9 @@
 //! is at its minimum, other minima are looked for, and all work is counted.
 
 use minvar::solve::{
-    BlockList, Coupled, Executor, InOrder, Observer, Outcome, Problem, Record, Settings, Silent, Status,
-    minimise, packed, workspace_len,
+    BlockList, Coupled, InOrder, Observer, Outcome, Problem, Record, Settings, Silent, Status, packed,
 };
+use minvar_tests::solving;
 use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -188,22 +188,8 @@ impl Problem for Links {
 
 fn run(problem: &Links, settings: &Settings, observer: &mut dyn Observer) -> (Outcome, Vec<f64>) {
     let mut state = problem.start();
-    let (outcome, _) = run_from(problem, settings, observer, &mut state);
+    let (outcome, _) = solving::run(problem, settings, &InOrder, observer, &mut state);
     (outcome, state)
-}
-
-fn run_from<P: Problem>(
-    problem: &P,
-    settings: &Settings,
-    observer: &mut dyn Observer,
-    state: &mut [f64],
-) -> (Outcome, Vec<Record>) {
-    let mut workspace = vec![f64::NAN; workspace_len(problem, InOrder.width())];
-    let mut records = vec![Record::ZERO; 300];
-    let outcome = minimise(problem, settings, &InOrder, state, &mut workspace, &mut records, observer);
-    let outcome = outcome.expect("enough memory");
-    records.truncate(outcome.iterations);
-    (outcome, records)
 }
 
 const SETTINGS: Settings = Settings { relaxation: 3, first_relaxation: 30, ..Settings::DEFAULT };
@@ -269,7 +255,7 @@ fn the_size_of_the_objective_changes_no_bit() {
             let run = |scale: f64| {
                 let problem = Links { scale, ..Links::new(6, is_product) };
                 let mut state = problem.start();
-                let (outcome, records) = run_from(&problem, &settings, &mut Silent, &mut state);
+                let (outcome, records) = solving::run(&problem, &settings, &InOrder, &mut Silent, &mut state);
                 let parts = |r: &Record| [r.value, r.predicted, r.actual, r.gradient, r.shift];
                 let mut history: Vec<f64> =
                     records.iter().flat_map(parts).chain([outcome.value]).map(|x| x / scale).collect();
@@ -286,7 +272,7 @@ fn the_size_of_the_objective_changes_no_bit() {
 
 /// What a run costs, and how often starts were taken.
 fn work(problem: &Links, settings: &Settings, state: &mut [f64]) -> (usize, usize, Outcome) {
-    let (outcome, _) = run_from(problem, settings, &mut Silent, state);
+    let (outcome, _) = solving::run(problem, settings, &InOrder, &mut Silent, state);
     (problem.linearised.load(Ordering::Relaxed), problem.varied.load(Ordering::Relaxed), outcome)
 }
 
@@ -421,7 +407,7 @@ fn other_minima_are_looked_for_three_times_and_told_of() {
         let settings = Settings { relaxation: 9, relative_decrease, ..Settings::DEFAULT };
         let problem = Stairs(3);
         let mut state = vec![10.0; 3];
-        let (outcome, _) = run_from(&problem, &settings, &mut Silent, &mut state);
+        let (outcome, _) = solving::run(&problem, &settings, &InOrder, &mut Silent, &mut state);
         assert_eq!(outcome.status, Status::Converged);
         assert!(state.iter().all(|p| (p - 7.0).abs() < 0.01), "{relative_decrease} {state:?}");
         let value: f64 = (0..3).map(|element| problem.cost(element, &state)).sum();

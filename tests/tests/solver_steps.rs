@@ -1,9 +1,9 @@
 //! What one step of the solver is, and when steps end: objectives of one element, of few unknowns.
 
 use minvar::solve::{
-    BlockList, Coupled, Executor, InOrder, Outcome, Problem, Record, Settings, Silent, Status, minimise,
-    packed, workspace_len,
+    BlockList, Coupled, InOrder, Outcome, Problem, Record, Settings, Silent, Status, packed,
 };
+use minvar_tests::solving;
 use std::ops::Range;
 
 /// The sums at a state, the gradient of the objective, that of the second sum, and the second derivatives of the first one
@@ -32,12 +32,7 @@ impl<const N: usize, F: Fn(&[f64]) -> Local<N> + Sync> Toy<N, F> {
 
     /// Minimises from a state, which is left where that ended; with what every iteration did.
     fn run(&self, settings: &Settings, state: &mut [f64; N]) -> (Outcome, Vec<Record>) {
-        let mut workspace = vec![f64::NAN; workspace_len(self, InOrder.width())];
-        let mut records = vec![Record::ZERO; settings.max_iterations];
-        let outcome =
-            minimise(self, settings, &InOrder, state, &mut workspace, &mut records, &mut Silent).unwrap();
-        records.truncate(outcome.iterations);
-        (outcome, records)
+        solving::run(self, settings, &InOrder, &mut Silent, state)
     }
 }
 

@@ -277,9 +277,7 @@ mod tests {
     use super::*;
     use crate::curve::joint::{Curve, Joint};
     use crate::curve::options::Options;
-    use crate::curve::placement::Place;
-    use crate::curve::solve::model;
-    use crate::curve::start::Start;
+    use crate::curve::tests::{planar, started};
     use std::vec;
     use std::vec::Vec;
 
@@ -290,10 +288,8 @@ mod tests {
         let joints = POINTS.map(Joint::at);
         for closed in [false, true] {
             let curve = Curve { closed, ..Curve::open(&joints) };
-            let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
-            let plain = model::<2>(&curve, &Options::DEFAULT, &place);
-            let mut first = vec![0.0; plain.state_len()];
-            assert!(Start { model: &plain, place: &place, parts: 1, turned: None }.fill(&mut first).is_ok());
+            let plain = planar(&curve, &Options::DEFAULT);
+            let first = started(&plain);
             let mut memory: Vec<[Vec<f64>; 3]> = Vec::new();
             for counts in counts {
                 let counts = counts.get(..curve.spans()).unwrap_or(counts);

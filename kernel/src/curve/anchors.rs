@@ -74,11 +74,7 @@ mod tests {
     use super::*;
     use crate::curve::functional::Functional;
     use crate::curve::obstacle::{Obstacle, Side};
-    use crate::curve::placement::Place;
-    use crate::curve::solve::model;
-    use crate::curve::start::Start;
-    use crate::solve::Problem;
-    use std::vec;
+    use crate::curve::tests::{planar, spatial, started};
 
     /// Joints that are where they begin.
     fn joints<const N: usize>(points: [[f64; 3]; N]) -> [Joint; N] {
@@ -145,11 +141,8 @@ mod tests {
     fn only_a_curve_that_does_not_turn_in_all_is_held() {
         let anchored = |points: &[Joint], closed: bool| {
             let curve = Curve::new(points, closed);
-            let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
-            let model = model::<2>(&curve, &SI, &place);
-            let mut state = vec![0.0; model.state_len()];
-            assert!(Start { model: &model, place: &place, parts: 1, turned: None }.fill(&mut state).is_ok());
-            anchors(&model, &SI, &state)
+            let model = planar(&curve, &SI);
+            anchors(&model, &SI, &started(&model))
         };
         let eight = joints(EIGHT);
         assert_eq!(anchored(&eight, true), Some([0, 2]));
@@ -161,10 +154,7 @@ mod tests {
         assert_eq!(anchored(&back, true), None);
         let deep = joints([[0.0, 0.0, 0.0], [2.0, 0.0, 0.5], [2.0, 1.0, 0.0], [0.0, 1.5, 1.0]]);
         let curve = Curve::new(&deep, true);
-        let Ok(Place::Space(place)) = Place::of(&curve, 1.0, 0) else { panic!("data in space") };
-        let model = model::<3>(&curve, &SI, &place);
-        let mut state = vec![0.0; model.state_len()];
-        assert!(Start { model: &model, place: &place, parts: 1, turned: None }.fill(&mut state).is_ok());
-        assert_eq!(anchors(&model, &SI, &state), None);
+        let model = spatial(&curve, &SI);
+        assert_eq!(anchors(&model, &SI, &started(&model)), None);
     }
 }

@@ -62,6 +62,8 @@ mod rows;
 mod solve;
 mod space;
 mod start;
+#[cfg(test)]
+mod tests;
 mod torsion;
 
 pub use element::Element;

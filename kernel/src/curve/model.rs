@@ -1025,9 +1025,7 @@ mod tests {
     use super::*;
     use crate::curve::joint::Quantity;
     use crate::curve::options::Options;
-    use crate::curve::placement::Place;
-    use crate::curve::solve::model;
-    use crate::curve::start::Start;
+    use crate::curve::tests::{planar, spatial, started};
     use std::vec;
 
     /// A free point that slides along its curve follows the osculating parabola; beside the curve it goes straight.
@@ -1035,8 +1033,7 @@ mod tests {
     where
         Shape<D>: Density<D>,
     {
-        let mut state = vec![0.0; model.state_len()];
-        assert!(Start { model, place: &model.place, parts: 1, turned: None }.fill(&mut state).is_ok());
+        let state = started(model);
         for node in 0..model.node_count() {
             let (element, end) = if node == model.element_count() { (node - 1, 1) } else { (node, 0) };
             let was = model.end(element, end, &state);
@@ -1061,12 +1058,10 @@ mod tests {
         let points = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 0.5, 0.0], [2.5, -1.0, 0.0]];
         let joints = points.map(|point| Joint::at(point).with_position(Quantity::initial(point)));
         let curve = Curve::open(&joints);
-        let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
-        slides(&model::<2>(&curve, &Options::DEFAULT, &place));
+        slides(&planar(&curve, &Options::DEFAULT));
         let mut deep = joints;
         deep[2].position.value[2] = 0.8;
         let curve = Curve::open(&deep);
-        let Ok(Place::Space(place)) = Place::of(&curve, 1.0, 0) else { panic!("data in space") };
-        slides(&model::<3>(&curve, &Options::DEFAULT, &place));
+        slides(&spatial(&curve, &Options::DEFAULT));
     }
 }

@@ -488,11 +488,15 @@ const CONTINUATION_DECREASE: f64 = 1e-4;
 const LEAST_PARTS: usize = 4;
 #[cfg(test)]
 mod tests {
+    extern crate std;
+
     use super::*;
     use crate::basis::hermite;
     use crate::curve::joint::{Joint, Quantity};
+    use crate::curve::tests::{planar, spatial, started};
     use crate::solve as solver;
     use nalgebra::SVector;
+    use std::vec;
 
     fn row(x: f64, y: f64) -> SVector<f64, 2> {
         SVector::from([x, y])
@@ -506,17 +510,11 @@ mod tests {
             Joint::at([1.5, -0.4, 0.0]),
         ];
         let curve = Curve::open(&joints);
-        let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
-        let options = Options { elements_per_span: 3, ..Options::DEFAULT };
-        let fine = model::<2>(&curve, &options, &place);
+        let fine = planar(&curve, &Options { elements_per_span: 3, ..Options::DEFAULT });
         let coarse = Model { division: Division::Even(1), ..fine };
-        let (mut coarse_state, mut state) = ([0.0; 100], [0.0; 300]);
-        assert!(
-            Start { model: &coarse, place: &place, parts: 1, turned: None }
-                .fill(&mut coarse_state[..coarse.state_len()])
-                .is_ok()
-        );
-        refine(&coarse, &coarse_state, |_| 3, &fine, &mut state[..fine.state_len()]);
+        let coarse_state = started(&coarse);
+        let mut state = vec![f64::NAN; fine.state_len()];
+        refine(&coarse, &coarse_state, |_| 3, &fine, &mut state);
         let at = |rows: &[SVector<f64, 2>; 6], t: f64, order: usize| {
             let basis = hermite::basis(t);
             (0..6).fold(row(0.0, 0.0), |sum, a| sum + rows[a] * basis[order][a])
@@ -548,12 +546,11 @@ mod tests {
             Joint::at([1.5, -0.4, 0.0]).with_tangent(Quantity::fixed([-1.0, -1.0, 0.0])),
         ];
         let curve = Curve::open(&joints);
-        let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
         let options = Options { tension: 0.25, ..Options::DEFAULT };
         let begin = || {
-            let mut model = model::<2>(&curve, &options, &place);
-            let mut state = [0.0; 56];
-            let start = Start { model: &model, place: &place, parts: 1, turned: None };
+            let mut model = planar(&curve, &options);
+            let mut state = vec![f64::NAN; model.state_len()];
+            let start = Start { model: &model, place: &model.place, parts: 1, turned: None };
             model.natural_cost = start.fill(&mut state).unwrap_or(f64::NAN);
             model.start_length = model.rough_length(&state);
             (model, state)
@@ -602,7 +599,6 @@ mod tests {
             Joint::at([1.2, -1.0, 1.8]),
         ];
         let curve = Curve::open(&joints);
-        let Ok(Place::Space(place)) = Place::of(&curve, 1.0, 0) else { panic!("data in space") };
         for (functional, softens) in [
             (Functional::SPACE_MVC, false),
             (Functional::SPACE_MVC, true),
@@ -610,10 +606,10 @@ mod tests {
             (Functional::SPACE_MEC, true),
         ] {
             let options = Options { functional, elements_per_span: 2, ..Options::DEFAULT };
-            let mut model = model::<3>(&curve, &options, &place);
-            let (mut memory, mut moved) = ([0.0; 400], [0.0; 400]);
-            let state = &mut memory[..model.state_len()];
-            assert!(Start { model: &model, place: &place, parts: 2, turned: None }.fill(state).is_ok());
+            let mut model = spatial(&curve, &options);
+            let mut memory = started(&model);
+            let mut moved = memory.clone();
+            let state = memory.as_mut_slice();
             take_scale(&mut model, state);
             if let Some(space) = &mut model.space {
                 space.softens = softens;
@@ -627,8 +623,7 @@ mod tests {
             let count: usize = dofs.iter().sum();
             let mut sizes = [1.0; 20];
             let mut cost = |steps: &[(usize, f64)]| {
-                let to = &mut moved[..state.len()];
-                to.copy_from_slice(state);
+                moved.copy_from_slice(state);
                 let mut first = 0;
                 for (k, &block) in list.iter().enumerate() {
                     let mut step = [0.0; 20];
@@ -638,10 +633,10 @@ mod tests {
                         }
                     }
                     let range = model.state_range(block);
-                    model.retract(block, &state[range.clone()], &step[..dofs[k]], &mut to[range]);
+                    model.retract(block, &state[range.clone()], &step[..dofs[k]], &mut moved[range]);
                     first += dofs[k];
                 }
-                model.cost(element, to)
+                model.cost(element, &moved)
             };
             let mut first = 0;
             for (k, &block) in list.iter().enumerate() {

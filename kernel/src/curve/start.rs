@@ -511,9 +511,9 @@ where
             if matches!(given.given, Given::FIXED | Given::SIZE) {
                 let wanted = place.local_curvature(&given.value);
                 let towards = if given.given == Given::SIZE { curvature } else { wanted };
-                let beside = towards - end.frame[0] * towards.dot(&end.frame[0]);
                 // What rounding leaves of a vector along the tangent has no direction.
-                let beside = unit(&beside).filter(|_| beside.amax() > UNDECIDED * towards.amax());
+                let least = UNDECIDED * UNDECIDED * towards.dot(&towards);
+                let beside = direction_across(&towards, &end.frame[0], least);
                 let beside = beside.unwrap_or_else(|| perpendicular(&end.frame[0]));
                 curvature = beside * place.local_size(&given.value);
             }
@@ -589,17 +589,15 @@ mod tests {
     use super::*;
     use crate::curve::joint::{Curve, Given, Quantity};
     use crate::curve::options::Options;
-    use crate::curve::placement::Place;
-    use crate::curve::solve::model;
+    use crate::curve::tests::planar;
     use crate::solve::Problem;
     use std::vec;
 
     /// The start of a planar curve, and a state in which its points stand.
     fn with<T>(curve: &Curve<'_>, turned: Option<usize>, work: impl Fn(&Start<'_, '_, 2>, &[f64]) -> T) -> T {
-        let Ok(Place::Plane(place)) = Place::of(curve, 1.0, 0) else { panic!("planar data") };
-        let model = model::<2>(curve, &Options::DEFAULT, &place);
+        let model = planar(curve, &Options::DEFAULT);
         let mut state = vec![f64::NAN; model.state_len()];
-        let start = Start { model: &model, place: &place, parts: 1, turned };
+        let start = Start { model: &model, place: &model.place, parts: 1, turned };
         start.points(&mut state);
         work(&start, &state)
     }

@@ -8,9 +8,7 @@ use crate::curve::joint::{Continuity, Curve, Joint, Quantity};
 use crate::curve::obstacle::{Obstacle, Side};
 use crate::curve::options::Options;
 use crate::curve::passes::value_of;
-use crate::curve::placement::Place;
-use crate::curve::solve::model;
-use crate::curve::start::Start;
+use crate::curve::tests::{planar, started};
 use crate::order::Order;
 use std::vec;
 use std::vec::Vec;
@@ -19,11 +17,8 @@ type Point = SVector<f64, 2>;
 
 /// The start of a planar curve through a joint at the origin: the local system is the caller's.
 fn with<T>(curve: &Curve<'_>, work: impl FnOnce(&Model<'_, 2>, Vec<f64>) -> T) -> T {
-    let Ok(Place::Plane(place)) = Place::of(curve, 1.0, 0) else { panic!("planar data") };
-    let model = model::<2>(curve, &Options::DEFAULT, &place);
-    let mut state = vec![f64::NAN; model.state_len()];
-    let start = Start { model: &model, place: &place, parts: 1, turned: None };
-    assert!(start.fill(&mut state).is_ok());
+    let model = planar(curve, &Options::DEFAULT);
+    let state = started(&model);
     work(&model, state)
 }
 
@@ -183,10 +178,8 @@ fn the_pull_at_a_node_is_the_slope_of_the_functional() {
     for functional in [Functional::MVC, Functional::MEC, Functional::SI_MVC] {
         let (open, closed) = (joints(WAVE), joints(RING));
         for curve in [Curve::open(&open), Curve { closed: true, ..Curve::open(&closed) }] {
-            let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
-            let model = model::<2>(&curve, &Options { functional, ..Options::DEFAULT }, &place);
-            let mut state = vec![0.0; model.state_len()];
-            assert!(Start { model: &model, place: &place, parts: 1, turned: None }.fill(&mut state).is_ok());
+            let model = planar(&curve, &Options { functional, ..Options::DEFAULT });
+            let state = started(&model);
             let first = weights_of_sums(&model, &state);
             let mut most = 0.0f64;
             for node in 0..model.node_count() {

@@ -190,9 +190,7 @@ mod tests {
     use crate::curve::joint::{Curve, Joint};
     use crate::curve::model::Division;
     use crate::curve::options::Options;
-    use crate::curve::placement::Place;
-    use crate::curve::solve::model;
-    use crate::curve::start::Start;
+    use crate::curve::tests::{planar, started};
     use crate::solve::Problem;
     use nalgebra::SVector;
     use std::vec;
@@ -214,10 +212,8 @@ mod tests {
     }
 
     /// The start values that a true curve is found from.
-    fn begin(model: &Model<'_, 2>, parts: usize) -> Vec<f64> {
-        let mut state = vec![0.0; model.state_len()];
-        let start = Start { model, place: &model.place, parts, turned: None };
-        assert!(start.fill(&mut state).is_ok());
+    fn begin(model: &Model<'_, 2>) -> Vec<f64> {
+        let mut state = started(model);
         let (joints, spans) = (model.curve.joints.len(), model.curve.spans());
         let mut memory = vec![f64::NAN; memory_len(6, joints, spans, model.curve.closed)];
         let wish = Wish { length: None, bent: None, warm: false, enough: 1e-9 };
@@ -235,10 +231,8 @@ mod tests {
             (true, Functional::SI_MVC),
         ] {
             let curve = Curve { closed, ..Curve::open(&joints) };
-            let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
-            let options = Options { functional, ..Options::DEFAULT };
-            let coarse = model::<2>(&curve, &options, &place);
-            let coarse_state = begin(&coarse, 1);
+            let coarse = planar(&curve, &Options { functional, ..Options::DEFAULT });
+            let coarse_state = begin(&coarse);
             let mut memory = vec![f64::NAN; trace_len(4, curve.spans(), closed)];
             let found = trace(&coarse, None, &coarse_state, None, &mut memory, &mut |_, _| true);
             let Some(found) = found else { panic!("it settles") };
@@ -327,10 +321,9 @@ mod tests {
         slides[1] = slides[1].on_line(POINTS[1], [0.0, 1.0, 0.0]);
         for (joints, division, traced) in [(joints, 1, true), (joints, 2, false), (slides, 1, false)] {
             let curve = Curve::open(&joints);
-            let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
-            let plain = model::<2>(&curve, &Options::DEFAULT, &place);
+            let plain = planar(&curve, &Options::DEFAULT);
             let model = Model { division: Division::Even(division), ..plain };
-            let state = begin(&model, division);
+            let state = begin(&model);
             let mut memory = vec![f64::NAN; trace_len(4, 3, false)];
             let of = |memory: &mut [f64], goes_on: bool| {
                 trace(&model, None, &state, None, memory, &mut |_, _| goes_on).is_some()

@@ -6,9 +6,8 @@ use super::*;
 use crate::curve::end::End;
 use crate::curve::functional::Functional;
 use crate::curve::joint::{Curve, Joint, Quantity};
-use crate::curve::placement::Place;
-use crate::curve::solve::model;
 use crate::curve::start::give_speeds;
+use crate::curve::tests::planar;
 use crate::solve::Silent;
 use nalgebra::SVector;
 use std::vec;
@@ -59,8 +58,7 @@ fn status(case: &Case) -> Status {
     }
     let curve = Curve::open(&joints);
     let plain = Options { functional: Functional::MEC, max_iterations: 10, ..Options::DEFAULT };
-    let Ok(Place::Plane(place)) = Place::of(&curve, 1.0, 0) else { panic!("planar data") };
-    let mut model = model::<2>(&curve, &plain, &place);
+    let mut model = planar(&curve, &plain);
     model.natural_cost = 1.0;
     model.start_length = TURN / case.growth;
     let mut state = vec![0.0; model.state_len()];

@@ -7,10 +7,7 @@ use super::*;
 use crate::curve::functional::Functional;
 use crate::curve::joint::{Continuity, Curve, Given, Joint, Quantity};
 use crate::curve::options::Options;
-use crate::curve::placement::Place;
-use crate::curve::solve::model;
-use crate::curve::start::Start;
-use crate::solve::Problem;
+use crate::curve::tests::{planar, started};
 use core::f64::consts::PI;
 use std::vec;
 use std::vec::Vec;
@@ -19,11 +16,8 @@ const EXACT: Effort = Effort { settled: 1e-10, iterations: 60, exact: true };
 
 /// The start of a planar curve through fixed joints.
 fn with<T>(curve: &Curve<'_>, functional: Functional, work: impl FnOnce(&Model<'_, 2>, &[f64]) -> T) -> T {
-    let Ok(Place::Plane(place)) = Place::of(curve, 1.0, 0) else { panic!("planar data") };
-    let model = model::<2>(curve, &Options { functional, ..Options::DEFAULT }, &place);
-    let mut state = vec![0.0; model.state_len()];
-    assert!(Start { model: &model, place: &place, parts: 1, turned: None }.fill(&mut state).is_ok());
-    work(&model, &state)
+    let model = planar(curve, &Options { functional, ..Options::DEFAULT });
+    work(&model, &started(&model))
 }
 
 fn memory<const N: usize>(model: &Model<'_, 2>) -> Vec<f64> {
