@@ -218,6 +218,36 @@ mod tests {
         assert!((whole.space - 1.0).abs() < 1e-12 && seen > 2.0, "pieces that follow on each other: {seen}");
     }
 
+    /// A straight element far from the origin has the noise of its coordinates in its figures, at any size of its own: that
+    /// does not call for division. What is sharp is divided there as it is at the origin.
+    #[test]
+    fn noise_of_far_coordinates_is_not_divided() {
+        let along = row(1.0, 0.3);
+        let gentle = [row(0.0, 0.0), along, row(0.0, 0.0), row(0.0, 0.0), along, along];
+        let sharp =
+            [row(0.0, 0.0), row(1.0, 0.0), row(0.0, 0.4), row(0.9, -0.5), row(0.01, 0.02), row(1.0, 0.3)];
+        let pieces = |rows: &[SVector<f64, 2>; 6], size: f64, away: f64| {
+            let mut rows = rows.map(|row| row * size);
+            for point in [0, 5] {
+                rows[point] += row(0.6, -0.7) * (size * away);
+            }
+            let mut count = 0;
+            Figures::default().add(&rows, |_| {
+                count += 1;
+                0.0
+            });
+            count
+        };
+        for size in [1e-3, 0.1, 1.0, 10.0, 1e3] {
+            for away in [0.0, 1.0, 1e3, 1e6, 1e9] {
+                assert_eq!(pieces(&gentle, size, away), 2, "{size} {away}");
+            }
+            for away in [0.0, 1.0, 1e3] {
+                assert!(pieces(&sharp, size, away) > 2, "{size} {away}");
+            }
+        }
+    }
+
     #[test]
     fn folds_and_stops_are_irregular() {
         assert!(is_regular(&[straight(1.0, 1.0), straight(0.5, 1.2)]));

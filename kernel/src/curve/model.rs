@@ -45,14 +45,14 @@ const MOST_LOCAL: usize = 20;
 type Coordinates = heapless::Vec<(usize, Coordinate), MOST_LOCAL>;
 
 /// A node's or a side's freedoms.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Freedom {
     point: PointFreedom,
     tangent: bool,
     curvature: CurvatureFreedom,
 }
 
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum CurvatureFreedom {
     Fixed,
     Turns,
@@ -86,7 +86,7 @@ pub(super) enum Contact<const D: usize> {
 }
 
 /// What of a point is free.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum PointFreedom {
     Fixed,
     Free,
@@ -1023,6 +1023,7 @@ mod tests {
     extern crate std;
 
     use super::*;
+    use crate::curve::functional::Functional;
     use crate::curve::joint::Quantity;
     use crate::curve::options::Options;
     use crate::curve::tests::{planar, spatial, started};
@@ -1053,10 +1054,120 @@ mod tests {
         }
     }
 
+    const POINTS: [[f64; 3]; 5] =
+        [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 0.5, 0.0], [2.5, -1.0, 0.0], [1.0, -2.0, 0.0]];
+
+    /// Each kind of position at each node of an open and a closed curve, while joints stay and while they slide.
+    #[test]
+    fn a_point_is_free_as_its_joint_says_and_slides_only_inside_a_smooth_curve() {
+        use PointFreedom::{Across, Fixed, Free, Line, Plane};
+        let along = [1.0, 2.0, 0.0];
+        let options = Options { functional: Functional::SI_MVC, ..Options::DEFAULT };
+        let initial = POINTS.map(|point| Joint::at(point).with_position(Quantity::initial(point)));
+        for closed in [false, true] {
+            for at in 0..5 {
+                let inside = closed || (1..4).contains(&at);
+                let loose = initial[at];
+                for (joint, stays, slides) in [
+                    (Joint::at(POINTS[at]), Fixed, Fixed),
+                    (loose.on_line(POINTS[at], along), Line, Line),
+                    // The plane of the curve leaves it to itself, another one cuts it in a line.
+                    (loose.on_plane(POINTS[at], along), Line, Line),
+                    (loose.on_plane(POINTS[at], [0.0, 0.0, 1.0]), if inside { Across } else { Free }, Free),
+                    (loose, if inside { Across } else { Free }, Free),
+                    (loose.with_position(Quantity::FREE), if inside { Across } else { Free }, Free),
+                    (loose.with_continuity(Continuity::G1), Free, Free),
+                    (loose.with_continuity(Continuity::G0), Free, Free),
+                ] {
+                    let mut joints = initial;
+                    joints[at] = joint;
+                    let curve = Curve::new(&joints, closed);
+                    let plane = planar(&curve, &options);
+                    let of = |model: &Model<'_, 2>| model.freedom(at, 0).point;
+                    let case = (closed, at, joint);
+                    assert_eq!(of(&Model { slides: false, ..plane }), stays, "{case:?}");
+                    assert_eq!(of(&Model { slides: true, ..plane }), slides, "{case:?}");
+                    // What stands for the whole curve stands, unless it slides.
+                    let other = (at + 1) % 5;
+                    let held = Model { slides: false, anchors: Some([other, at]), ..plane };
+                    let kept = if matches!(stays, Line) { Line } else { Fixed };
+                    assert_eq!(
+                        held.freedom(at, 1),
+                        Freedom { point: kept, tangent: false, ..held.freedom(at, 1) }
+                    );
+                    let held = Model { slides: true, ..held };
+                    assert_eq!((of(&held), held.freedom(at, 1).tangent), (slides, true), "{case:?}");
+                    let beside = Model { slides: false, anchors: Some([other; 2]), ..plane };
+                    assert_eq!((of(&beside), beside.freedom(at, 1).tangent), (stays, true), "{case:?}");
+                }
+            }
+        }
+        let mut deep = initial;
+        deep[1] = deep[1].on_plane(POINTS[1], along);
+        deep[2].position.value[2] = 0.8;
+        let curve = Curve::open(&deep);
+        assert_eq!(spatial(&curve, &options).freedom(1, 0).point, Plane);
+        // A node between two joints is free, and across the curve alone where torsion is known.
+        let two = Options { elements_per_span: 2, ..options };
+        let whole = Freedom { point: Free, tangent: true, curvature: CurvatureFreedom::Free };
+        assert_eq!(spatial(&curve, &two).freedom(3, 1), whole);
+        let two = Options { functional: Functional::SPACE_MVC, ..two };
+        assert_eq!(spatial(&curve, &two).freedom(3, 1), Freedom { point: Across, ..whole });
+    }
+
+    /// The kinds of tangent and curvature, on either side.
+    #[test]
+    fn a_curvature_is_free_fixed_or_turns_about_its_tangent() {
+        use CurvatureFreedom::{Fixed, Free, Turns};
+        let (along, bend) = ([1.0, 2.0, 0.0], [0.2, -0.1, 0.0]);
+        let (fixed, of_size) = (Quantity::fixed, Quantity::of_size);
+        for (given, tangent, flat, deep) in [
+            (Quantity::FREE, Quantity::FREE, Free, Free),
+            (Quantity::initial(bend), Quantity::FREE, Free, Free),
+            (Quantity::initial(bend), fixed(along), Free, Free),
+            // A vector that is given with its tangent stands; with a free one it turns with it.
+            (fixed(bend), fixed(along), Fixed, Fixed),
+            (fixed(bend), Quantity::FREE, Fixed, Turns),
+            (of_size(bend), fixed(along), Fixed, Turns),
+            (of_size(bend), Quantity::initial(along), Fixed, Turns),
+            // What is straight has no direction to turn.
+            (fixed([0.0; 3]), Quantity::FREE, Fixed, Fixed),
+            (of_size([0.0; 3]), fixed(along), Fixed, Fixed),
+        ] {
+            for side in 0..2 {
+                let mut joints = POINTS.map(Joint::at);
+                joints[2] = joints[2].with_continuity(Continuity::G0);
+                joints[2].tangent[side] = tangent;
+                joints[2].curvature[side] = given;
+                let wanted = tangent.given != Given::FIXED;
+                let of = |freedom: Freedom| (freedom.tangent, freedom.curvature);
+                let curve = Curve::open(&joints);
+                let plane = planar(&curve, &Options::DEFAULT);
+                assert_eq!(of(plane.freedom(2, side)), (wanted, flat), "{given:?} {tangent:?}");
+                assert_eq!(of(plane.freedom(2, 1 - side)), (true, Free), "{given:?} {tangent:?}");
+                joints[4].position.value[2] = 0.8;
+                let curve = Curve::open(&joints);
+                let space = spatial(&curve, &Options::DEFAULT);
+                assert_eq!(of(space.freedom(2, side)), (wanted, deep), "{given:?} {tangent:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_curve_runs_away_that_is_a_hundred_times_as_long_as_at_its_start() {
+        let joints = POINTS.map(Joint::at);
+        let mut model = planar(&Curve::open(&joints), &Options::DEFAULT);
+        let state = started(&model);
+        let length = model.rough_length(&state);
+        for (times, away) in [(1.0, false), (99.0, false), (101.0, true)] {
+            model.start_length = length / times;
+            assert_eq!(model.runs_away(&state), away, "{times}");
+        }
+    }
+
     #[test]
     fn a_free_point_slides_along_its_osculating_parabola() {
-        let points = [[0.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 0.5, 0.0], [2.5, -1.0, 0.0]];
-        let joints = points.map(|point| Joint::at(point).with_position(Quantity::initial(point)));
+        let joints = POINTS.map(|point| Joint::at(point).with_position(Quantity::initial(point)));
         let curve = Curve::open(&joints);
         slides(&planar(&curve, &Options::DEFAULT));
         let mut deep = joints;
