@@ -89,10 +89,13 @@ miri: tools
 	MIRIFLAGS="$(MIRI_STRICT) -Zmiri-tree-borrows" $(MIRI) test --locked -p minvar-ffi-tests --features no-assembly
 
 # As often as wanted: `make fuzz FUZZ=reference FUZZ_SECONDS=1800`. Exit status 1 if something is found.
-FUZZ ?=
-
+FUZZ ?= c_curve c_chain constraints path reference
 fuzz: ceres
-	scripts/fuzz.sh $(FUZZ)
+	@scripts/fuzz.sh build
+	@$(MAKE) --no-print-directory -k -j$$(nproc) $(FUZZ:%=fuzz-run-%)
+
+fuzz-run-%:
+	@scripts/fuzz.sh run $*
 
 sanitize: tools
 	scripts/sanitize.sh

@@ -294,3 +294,40 @@ fn a_line_that_is_taken_as_it_comes_exceeds_nothing() {
         assert!(figures.iter().all(|x| x.abs() <= 1e-20 * norm(direction).powi(-3)), "{report:?}");
     }
 }
+
+/// A solve that is given up leaves an element that all but stops at one end. Straightened by an update it runs along the line
+/// as well as any, to the fit; its cost by a rule is infinite, which had passed for converged.
+#[test]
+fn an_update_from_an_element_that_all_but_stops_has_finite_figures() {
+    let joints = |moved: f64| {
+        let start = Joint::at([-9.0 + moved, -7.625 + moved, moved]);
+        let end = Joint::at([-9.875 + moved, -1.0 + moved, moved]);
+        [
+            start.with_curvature(Quantity::initial([-10.0, -10.0, 0.0])),
+            end.with_tangent(Quantity::initial([-10.0, 0.5, 0.0])),
+        ]
+    };
+    let options = Options {
+        functional: Functional::MEC,
+        max_iterations: 12,
+        relative_decrease: 1e-6,
+        bending: 100.0,
+        ..Options::DEFAULT
+    };
+    let before = joints(0.0);
+    let (report, mut elements) = solve_curve(&before, false, &options).expect("good data");
+    assert_eq!(report.status, Status::IterationLimit);
+    let ends = [elements[0].rows[1], elements[0].rows[4]].map(norm);
+    assert!(ends[0] < 0.02 * ends[1], "{ends:?}");
+
+    let after = joints(-10.0);
+    let curve = Curve::open(&after);
+    let mut workspace = vec![f64::NAN; workspace_len(&curve, &options).expect("good data")];
+    let report = update(&curve, &options, &mut workspace, &mut elements, &mut [], &mut Silent);
+    let report = report.expect("good data");
+    assert_eq!(report.status, Status::Converged, "{report:?}");
+    assert!(report.value.is_finite() && report.value < 1e-9, "{report:?}");
+    assert!((report.length - libm::hypot(0.875, 6.625)).abs() < 1e-9, "{report:?}");
+    let ends = [elements[0].rows[1], elements[0].rows[4]].map(norm);
+    assert!(ends[0] > 0.1 * ends[1] && ends[1] > 0.1 * ends[0], "{ends:?}");
+}

@@ -139,15 +139,25 @@ where
         for (end, this) in ends.iter_mut().enumerate() {
             *this = chain.joint_end(index, end, &span, &along, this);
         }
-        if !wish.warm {
-            super::start::give_speeds(&mut ends, span.length(), span.turning(&COARSE));
-        }
         let direction = span.coefficients();
         let known = Known { direction: &direction, length: span.length(), from: 0.0, to: 1.0 };
         let weight = if varies { weigh.bend } else { weigh.slope };
-        misfit += weight * fit(&mut ends, &known, varies, wish.warm, enough);
-        for (end, value) in ends.iter().enumerate() {
-            model.set_end(index, end, value, state);
+        // Along a straight line speeds of a last solution that all but stop fit as well as any.
+        for warm in [true, false] {
+            if warm && !wish.warm {
+                continue;
+            }
+            if !warm {
+                super::start::give_speeds(&mut ends, span.length(), span.turning(&COARSE));
+            }
+            let missed = weight * fit(&mut ends, &known, varies, warm, enough);
+            for (end, value) in ends.iter().enumerate() {
+                model.set_end(index, end, value, state);
+            }
+            if !warm || model.cost(index, state).is_finite() {
+                misfit += missed;
+                break;
+            }
         }
     }
     let tension = if wish.length.is_some() { weigh.length } else { 0.0 };

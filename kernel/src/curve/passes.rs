@@ -386,7 +386,7 @@ impl<'a> Passes<'a> {
         let sums = total(model, state);
         let value = model.couple(sums).value;
         let excess = improved.left_out + improved.misfit.larger(sums[0] - improved.integral);
-        (SURE * excess <= relative_decrease * sums[0]).then_some(Outcome {
+        (sums[0].is_finite() && SURE * excess <= relative_decrease * sums[0]).then_some(Outcome {
             status: Status::Converged,
             iterations: 0,
             linearisations: 0,

@@ -112,8 +112,8 @@ where
     if report.status == Status::Converged {
         let regular = figures.irregular == 0;
         let natural = model.natural_cost() * functional_scale(options, model.place.unit);
-        let trusted =
-            (report.fine_value - report.value).abs() <= TRUSTED * (report.value + NOTHING * natural);
+        let trusted = report.value.is_finite()
+            && (report.fine_value - report.value).abs() <= TRUSTED * (report.value + NOTHING * natural);
         let long = passes.length_is_met(|| figures.length);
         let grown = growth > SUSPECT_GROWTH;
         if !(regular && trusted && long) {
