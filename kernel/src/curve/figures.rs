@@ -188,10 +188,13 @@ mod tests {
     }
 
     /// An element that is fifty times slower at its end than at its start, and turns there: a boundary layer of an energy.
+    fn sharp() -> [SVector<f64, 2>; 6] {
+        [row(0.0, 0.0), row(1.0, 0.0), row(0.0, 0.4), row(0.9, -0.5), row(0.01, 0.02), row(1.0, 0.3)]
+    }
+
     #[test]
     fn what_a_rule_does_not_resolve_is_divided() {
-        let element =
-            [row(0.0, 0.0), row(1.0, 0.0), row(0.0, 0.4), row(0.9, -0.5), row(0.01, 0.02), row(1.0, 0.3)];
+        let element = sharp();
         let coarse = halves(&element).map(|half| Sums::of(&half, |_| {}).integrals);
         let mut whole = Figures::default();
         whole.add(&element, |_| 0.0);
@@ -224,8 +227,6 @@ mod tests {
     fn noise_of_far_coordinates_is_not_divided() {
         let along = row(1.0, 0.3);
         let gentle = [row(0.0, 0.0), along, row(0.0, 0.0), row(0.0, 0.0), along, along];
-        let sharp =
-            [row(0.0, 0.0), row(1.0, 0.0), row(0.0, 0.4), row(0.9, -0.5), row(0.01, 0.02), row(1.0, 0.3)];
         let pieces = |rows: &[SVector<f64, 2>; 6], size: f64, away: f64| {
             let mut rows = rows.map(|row| row * size);
             for point in [0, 5] {
@@ -243,7 +244,7 @@ mod tests {
                 assert_eq!(pieces(&gentle, size, away), 2, "{size} {away}");
             }
             for away in [0.0, 1.0, 1e3] {
-                assert!(pieces(&sharp, size, away) > 2, "{size} {away}");
+                assert!(pieces(&sharp(), size, away) > 2, "{size} {away}");
             }
         }
     }

@@ -143,10 +143,8 @@ where
         let known = Known { direction: &direction, length: span.length(), from: 0.0, to: 1.0 };
         let weight = if varies { weigh.bend } else { weigh.slope };
         // Along a straight line speeds of a last solution that all but stop fit as well as any.
-        for warm in [true, false] {
-            if warm && !wish.warm {
-                continue;
-            }
+        let mut warm = wish.warm;
+        loop {
             if !warm {
                 super::start::give_speeds(&mut ends, span.length(), span.turning(&COARSE));
             }
@@ -158,6 +156,7 @@ where
                 misfit += missed;
                 break;
             }
+            warm = false;
         }
     }
     let tension = if wish.length.is_some() { weigh.length } else { 0.0 };
