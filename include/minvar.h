@@ -326,7 +326,8 @@ typedef struct minvar_joint {
 //
 // Where the curve would come too near it gets a contact: a place between two elements that rolls around the obstacle's
 // end, or slides along the segment, at just that distance; position, tangent and curvature are continuous there. Contacts
-// are taken up and given up one by one (an active set) until nothing is too near and every contact pushes.
+// are taken up and given up one by one (an active set) until nothing is too near and every contact pushes. What an open
+// curve does not pass, as it lies beyond the lines across its ends, is no obstacle to it.
 typedef struct minvar_obstacle {
     // One end of the segment.
     double from[3];

@@ -109,7 +109,8 @@ pub enum minvar_side {
 ///
 /// Where the curve would come too near it gets a contact: a place between two elements that rolls around the obstacle's
 /// end, or slides along the segment, at just that distance; position, tangent and curvature are continuous there. Contacts
-/// are taken up and given up one by one (an active set) until nothing is too near and every contact pushes.
+/// are taken up and given up one by one (an active set) until nothing is too near and every contact pushes. What an open
+/// curve does not pass, as it lies beyond the lines across its ends, is no obstacle to it.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct minvar_obstacle {

@@ -9,25 +9,17 @@ use super::end::{End, rows_between};
 use super::fairness::{Density, Shape};
 use super::model::{Contact, Model};
 use super::passes::{Passes, weights_of_sums};
-use super::rows::place;
 use super::start::{cut, refine};
-use crate::root::sqrt;
 use crate::solve::{BlockList, Outcome, Problem, Status, WorkspaceTooSmall};
 use crate::total::Total;
 use nalgebra::SVector;
 
+mod worst;
+
+use worst::{Foot, worst};
+
 #[cfg(test)]
 mod tests;
-
-/// A violation below this part of the curve's size is none.
-const TOUCHES: f64 = 1e-9;
-/// Places an element, and on a segment, where the nearest is looked for first.
-const SAMPLES: usize = 16;
-
-/// Steps to the nearest place.
-const MOST_STEPS: usize = 12;
-/// Steps to the worst place of a segment between samples.
-const THIRDS: usize = 24;
 
 /// The least part of an element that is cut off.
 const LEAST_PIECE: f64 = 0.05;
@@ -165,134 +157,6 @@ impl Touching<'_> {
     }
 }
 
-/// A place of a curve near a point.
-#[derive(Clone, Copy)]
-struct Foot<const D: usize> {
-    element: usize,
-    t: f64,
-    /// How far the point lies to the left of the curve.
-    left: f64,
-}
-
-impl<const D: usize> Foot<D> {
-    /// The foot of a point on a chain of elements; `None` where the nearest place is an end of an open curve that it
-    /// does not pass.
-    fn of(model: &Model<'_, D>, state: &[f64], point: &SVector<f64, D>) -> Option<Self>
-    where
-        Shape<D>: Density<D>,
-    {
-        let mut best: Option<(f64, usize, f64)> = None;
-        for element in 0..model.element_count() {
-            let rows = model.rows(element, state);
-            for sample in 0..=SAMPLES {
-                let t = sample as f64 / SAMPLES as f64;
-                let off = place(&rows, t)[0] - point;
-                let square = off.dot(&off);
-                if best.is_none_or(|(least, ..)| square < least) {
-                    best = Some((square, element, t));
-                }
-            }
-        }
-        let (_, mut element, mut t) = best?;
-        let count = model.element_count();
-        let (after, before) = (
-            |element: usize| if element + 1 == count { 0 } else { element + 1 },
-            |element: usize| if element == 0 { count - 1 } else { element - 1 },
-        );
-        let mut rows = model.rows(element, state);
-        for _ in 0..MOST_STEPS {
-            let [here, first, second] = place(&rows, t);
-            let off = here - point;
-            let slope = first.dot(&first) + off.dot(&second);
-            let slope = if slope > 0.0 { slope } else { first.dot(&first) };
-            let next = t - off.dot(&first) / slope;
-            t = next.clamp(0.0, 1.0);
-            // Over a node into the neighbour.
-            let over = if next > 1.0 { after(element) } else { before(element) };
-            let ends = !model.curve.closed && if next > 1.0 { over == 0 } else { next < 0.0 && element == 0 };
-            if next != t && !ends {
-                let beyond = model.rows(over, state);
-                let back = if next > 1.0 { 0.0 } else { 1.0 };
-                let [there, ahead, _] = place(&beyond, back);
-                // At a corner both sides may lead back to it.
-                if (ahead.dot(&(point - there)) > 0.0) == (next > 1.0) {
-                    (element, t, rows) = (over, back, beyond);
-                }
-            }
-        }
-        let [here, first, _] = place(&rows, t);
-        let off = point - here;
-        let (distance, speed) = (sqrt(off.dot(&off)), sqrt(first.dot(&first)));
-        let mut tangent = first / speed;
-        let at_end = (t == 0.0 && element == 0) || (t == 1.0 && element + 1 == count);
-        if at_end && !model.curve.closed {
-            if off.dot(&tangent).abs() > 0.1 * distance {
-                return None;
-            }
-        } else if t == 0.0 || t == 1.0 {
-            // A corner's sides are those of what halves it.
-            let (other, end) = if t == 0.0 { (before(element), 1) } else { (after(element), 0) };
-            tangent += model.end(other, end, state).frame[0];
-        }
-        let across = tangent[0] * off[1] - tangent[1] * off[0];
-        let left = if across >= 0.0 { distance } else { -distance };
-        Some(Self { element, t, left })
-    }
-}
-
-/// The worst violation, if there is any: how much too near, the contact's code, the foot and the place.
-fn worst<const D: usize>(
-    model: &Model<'_, D>,
-    state: &[f64],
-    taken: impl Fn(usize) -> bool,
-) -> Option<(f64, usize, Foot<D>, SVector<f64, D>)>
-where
-    Shape<D>: Density<D>,
-{
-    let least = TOUCHES * model.rough_length(state);
-    let mut worst: Option<(f64, usize, Foot<D>, SVector<f64, D>)> = None;
-    for (index, obstacle) in model.curve.obstacles.iter().enumerate() {
-        let [from, to] = [&obstacle.from, &obstacle.to].map(|point| model.place.local_point(point));
-        let clearance = model.place.local_length(obstacle.clearance);
-        let sign = obstacle.side.sign();
-        let lack = |share: f64| {
-            let point = from + (to - from) * share;
-            Foot::of(model, state, &point).map(|foot| (clearance - sign * foot.left, foot, point))
-        };
-        let mut note = |which: usize, found: Option<(f64, Foot<D>, SVector<f64, D>)>| {
-            if let Some((lack, foot, point)) = found
-                && lack > worst.as_ref().map_or(least, |(most, ..)| *most)
-            {
-                worst = Some((lack, 3 * index + which, foot, point));
-            }
-        };
-        for (which, share) in [(0, 0.0), (1, 1.0)] {
-            if (from != to || which == 0) && !taken(3 * index + which) {
-                note(which, lack(share));
-            }
-        }
-        if from != to {
-            let step = 1.0 / SAMPLES as f64;
-            let value = |share: f64| lack(share).map_or(f64::NEG_INFINITY, |(lack, ..)| lack);
-            let inner = (1..SAMPLES).map(|sample| sample as f64 * step);
-            let (_, nearest) = inner.fold((f64::NEG_INFINITY, 0.5), |best, share| {
-                let here = value(share);
-                if here > best.0 { (here, share) } else { best }
-            });
-            // By thirds to the place between the samples.
-            let (mut low, mut high) = (nearest - step, nearest + step);
-            for _ in 0..THIRDS {
-                let third = (high - low) / 3.0;
-                if value(low + third) < value(high - third) { low += third } else { high -= third }
-            }
-            let between = 0.5 * (low + high);
-            let share = if value(between) > value(nearest) { between } else { nearest };
-            note(2, lack(share));
-        }
-    }
-    worst
-}
-
 /// By how much the functional sinks when the curve at a node moves by a unit to the left.
 fn pull<const D: usize>(model: &Model<'_, D>, node: usize, first: [f64; 2], state: &[f64]) -> f64
 where
@@ -351,8 +215,7 @@ where
         if !changed {
             let found = {
                 let model = of.touching(touching.marks.part(..nodes), touching.contacts);
-                let taken = |code: usize| (0..nodes).any(|node| model.contact_code(node) == Some(code));
-                worst(&model, touching.state, taken)
+                worst(&model, touching.state)
             };
             let Some((_, code, foot, point)) = found else { return Ok(outcome) };
             if touching.used == touching.contacts.len() || nodes == touching.marks.len() {

@@ -76,6 +76,19 @@ pub(super) enum Division<'a> {
     Marked(&'a [f64]),
 }
 
+/// The length of a vector of any size.
+pub(super) fn extent<const D: usize>(vector: &SVector<f64, D>) -> f64 {
+    let most = vector.amax();
+    let scaled = vector / most;
+    if most > 0.0 { most * sqrt(scaled.dot(&scaled)) } else { 0.0 }
+}
+
+/// The direction of a vector of any size; not a number of none.
+pub(super) fn heading<const D: usize>(vector: &SVector<f64, D>) -> SVector<f64, D> {
+    let scaled = vector / vector.amax();
+    scaled / sqrt(scaled.dot(&scaled))
+}
+
 /// How a node touches an obstacle.
 #[derive(Clone, Copy)]
 pub(super) enum Contact<const D: usize> {
@@ -205,10 +218,7 @@ impl<const D: usize> Model<'_, D> {
         Some(match code % 3 {
             0 => Contact::Around { point: from, left: left * self.place.local_length(obstacle.clearance) },
             1 => Contact::Around { point: to, left: left * self.place.local_length(obstacle.clearance) },
-            _ => {
-                let along = to - from;
-                Contact::Along { direction: along / sqrt(along.dot(&along)) }
-            }
+            _ => Contact::Along { direction: heading(&(to - from)) },
         })
     }
 

@@ -22,7 +22,8 @@ impl Side {
 ///
 /// Where the curve would come too near it gets a *contact*: a node that rolls around the obstacle's end, or slides along
 /// the segment, at just that distance. Contacts are taken up and given up one by one (an active set) until nothing is too
-/// near and every contact pushes. At a contact position, tangent and curvature are continuous, as at a joint.
+/// near and every contact pushes. At a contact position, tangent and curvature are continuous, as at a joint. What an open
+/// curve does not pass, as it lies beyond the lines across its ends, is no obstacle to it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Obstacle {

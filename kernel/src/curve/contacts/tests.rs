@@ -8,8 +8,10 @@ use crate::curve::joint::{Continuity, Curve, Joint, Quantity};
 use crate::curve::obstacle::{Obstacle, Side};
 use crate::curve::options::Options;
 use crate::curve::passes::value_of;
+use crate::curve::rows::place;
 use crate::curve::tests::{planar, started};
 use crate::order::Order;
+use crate::root::sqrt;
 use std::vec;
 use std::vec::Vec;
 
@@ -45,7 +47,7 @@ fn the_foot_of_a_point_beside_a_curve_is_where_the_curve_is_nearest() {
                 for t in [0.0, 1e-6, 0.01, 0.03, 0.29, 0.5, 0.77, 0.99, 1.0 - 1e-6, 1.0] {
                     let (here, normal) = beside(model, &state, element, t);
                     for left in [-0.3, -0.01, 1e-7, 0.02, 0.3] {
-                        let Some(foot) = Foot::of(model, &state, &(here + normal * left)) else {
+                        let Some(foot) = Foot::of(model, &state, &(here + normal * left), 0.0) else {
                             panic!("{element} {t} {left}: no foot")
                         };
                         let (found, _) = beside(model, &state, foot.element, foot.t);
@@ -67,10 +69,10 @@ fn what_an_open_curve_does_not_pass_has_no_foot() {
             let tangent = Point::from([normal[1], -normal[0]]) * ahead;
             for left in [-0.5, 0.0, 0.5] {
                 let beyond = here + tangent * 0.3 + normal * left;
-                assert!(Foot::of(model, &state, &beyond).is_none(), "{element} {left}");
+                assert!(Foot::of(model, &state, &beyond, 0.0).is_none(), "{element} {left}");
             }
             // Nearly beside the end it is still passed.
-            let Some(foot) = Foot::of(model, &state, &(here + normal * 0.5 + tangent * 0.01)) else {
+            let Some(foot) = Foot::of(model, &state, &(here + normal * 0.5 + tangent * 0.01), 0.0) else {
                 panic!("{element}: no foot")
             };
             assert!((foot.element, foot.t) == (element, t) && (foot.left - 0.5).abs() < 1e-3);
@@ -82,7 +84,7 @@ fn what_an_open_curve_does_not_pass_has_no_foot() {
         let (here, normal) = beside(model, &state, 0, 0.0);
         let tangent = Point::from([normal[1], -normal[0]]);
         for ahead in [-0.3, 0.3] {
-            assert!(Foot::of(model, &state, &(here + tangent * ahead + normal * 0.5)).is_some());
+            assert!(Foot::of(model, &state, &(here + tangent * ahead + normal * 0.5), 0.0).is_some());
         }
     });
 }
@@ -99,10 +101,14 @@ fn a_corner_has_two_sides() {
     zigzag[2] = zigzag[2].with_tangent(straight([1.0, -1.0, 0.0]));
     with(&Curve::open(&zigzag), |model, state| {
         for x in [-0.2, 0.0, 0.2] {
-            let Some(foot) = Foot::of(model, &state, &Point::from([2.0 + x, 2.5])) else { panic!("no foot") };
+            let Some(foot) = Foot::of(model, &state, &Point::from([2.0 + x, 2.5]), 0.0) else {
+                panic!("no foot")
+            };
             assert!((foot.left - sqrt(0.25 + x * x)).abs() < 1e-12, "{x}: {}", foot.left);
             assert!((foot.element, foot.t) == (0, 1.0) || (foot.element, foot.t) == (1, 0.0));
-            let Some(foot) = Foot::of(model, &state, &Point::from([2.0 + x, 1.5])) else { panic!("no foot") };
+            let Some(foot) = Foot::of(model, &state, &Point::from([2.0 + x, 1.5]), 0.0) else {
+                panic!("no foot")
+            };
             assert!((foot.left + (0.5 - x.abs()) * sqrt(0.5)).abs() < 1e-12, "{x}: {}", foot.left);
             assert!(x == 0.0 || foot.element == usize::from(x > 0.0));
         }
@@ -110,10 +116,10 @@ fn a_corner_has_two_sides() {
 }
 
 /// The obstacles of a curve that runs straight from left to right.
-fn lack(obstacles: &[Obstacle], taken: &[usize]) -> Option<(f64, usize, f64, Point)> {
+fn lack(obstacles: &[Obstacle]) -> Option<(f64, usize, f64, Point)> {
     let line = joints([[0.0, 0.0], [4.0, 0.0], [8.0, 0.0]]);
     with(&Curve::open(&line).with_obstacles(obstacles), |model, state| {
-        worst(model, &state, |code| taken.contains(&code))
+        worst(model, &state)
             .map(|(lack, code, foot, point)| (lack, code, 4.0 * (foot.element as f64 + foot.t), point))
     })
 }
@@ -129,28 +135,23 @@ fn the_worst_violation_comes_first() {
         assert!((x - wanted.2[0]).abs() < 0.05, "{x} instead of {wanted:?}");
     };
     let point = |at, clearance, side| Obstacle::point(at, clearance, side);
-    check(lack(&[point(near, 1.0, left)], &[]), (0.5, 0, [3.0, 0.5]));
+    check(lack(&[point(near, 1.0, left)]), (0.5, 0, [3.0, 0.5]));
     // On the wrong side it lacks the distance and the clearance.
-    check(lack(&[point(near, 1.0, right)], &[]), (1.5, 0, [3.0, 0.5]));
-    check(lack(&[point([3.0, -0.5, 0.0], 1.0, left)], &[]), (1.5, 0, [3.0, -0.5]));
-    check(lack(&[point(far, 1.0, left), point(near, 1.0, left)], &[]), (0.5, 3, [3.0, 0.5]));
-    check(lack(&[point(near, 1.0, left), point(far, 1.0, left)], &[]), (0.5, 0, [3.0, 0.5]));
-    check(lack(&[point(near, 1.0, left), point(far, 1.0, left)], &[0]), (0.1, 3, [5.0, 0.9]));
-    // What is clear, or has its contact, or lies beyond the ends, is no violation.
-    assert!(lack(&[point(near, 0.5, left)], &[]).is_none());
-    assert!(lack(&[point(near, 0.5 + 1e-9, left)], &[]).is_none());
-    check(lack(&[point(near, 0.5 + 1e-7, left)], &[]), (1e-7, 0, [3.0, 0.5]));
-    assert!(lack(&[point(near, 1.0, left)], &[0]).is_none());
-    assert!(lack(&[point([9.0, 0.5, 0.0], 1.0, left)], &[]).is_none());
+    check(lack(&[point(near, 1.0, right)]), (1.5, 0, [3.0, 0.5]));
+    check(lack(&[point([3.0, -0.5, 0.0], 1.0, left)]), (1.5, 0, [3.0, -0.5]));
+    check(lack(&[point(far, 1.0, left), point(near, 1.0, left)]), (0.5, 3, [3.0, 0.5]));
+    check(lack(&[point(near, 1.0, left), point(far, 1.0, left)]), (0.5, 0, [3.0, 0.5]));
+    // What is clear, or lies beyond the ends, is no violation.
+    assert!(lack(&[point(near, 0.5, left)]).is_none());
+    assert!(lack(&[point(near, 0.5 + 1e-9, left)]).is_none());
+    check(lack(&[point(near, 0.5 + 1e-7, left)]), (1e-7, 0, [3.0, 0.5]));
+    assert!(lack(&[point([9.0, 0.5, 0.0], 1.0, left)]).is_none());
 
     // Of a segment either end, numbered apart.
     let slope = [Obstacle::segment(near, far, 1.0, left)];
-    check(lack(&slope, &[]), (0.5, 0, [3.0, 0.5]));
+    check(lack(&slope), (0.5, 0, [3.0, 0.5]));
     let slope = [point(far, 0.0, left), Obstacle::segment(far, near, 1.0, left)];
-    check(lack(&slope, &[]), (0.5, 4, [3.0, 0.5]));
-    // Its other places are no ends; near one that is taken they are as bad.
-    let Some((lack, 5, _, place)) = lack(&slope, &[4]) else { panic!("the inner part") };
-    assert!((0.45..0.5).contains(&lack) && (place[0] - 3.0).abs() < 0.3, "{lack} {place}");
+    check(lack(&slope), (0.5, 4, [3.0, 0.5]));
 }
 
 /// A segment over the top of an arc, the top between two of its samples, to either side of the nearest.
@@ -164,12 +165,128 @@ fn the_worst_place_of_a_segment_is_found_between_its_samples() {
         for (begin, end) in [(from, to), (to, from)] {
             let segment = [Obstacle::segment([begin, 1.2, 0.0], [end, 1.2, 0.0], 0.5, Side::LEFT)];
             with(&Curve::open(&arc).with_obstacles(&segment), |model, state| {
-                let Some((lack, 2, foot, place)) = worst(model, &state, |_| false) else { panic!("a place") };
+                let Some((lack, 2, foot, place)) = worst(model, &state) else { panic!("a place") };
                 assert!((place[0] - 1.0).abs() < 1e-4 && (place[1] - 1.2).abs() < 1e-12, "{place}");
                 assert!((lack - 0.3).abs() < 1e-9 && (foot.left - 0.2).abs() < 1e-9, "{lack}");
             });
         }
     }
+}
+
+/// The same where the segment is so long that no sample of it lies near the curve, in any direction and from either end.
+#[test]
+fn the_worst_place_of_a_long_segment_is_found() {
+    let arc = joints([[-1.0, 0.0], [0.0, 1.0], [1.0, 0.0]]);
+    let clear = |from: [f64; 2], to: [f64; 2], clearance: f64| {
+        let segment =
+            [Obstacle::segment([from[0], from[1], 0.0], [to[0], to[1], 0.0], clearance, Side::LEFT)];
+        with(&Curve::open(&arc).with_obstacles(&segment), |model, state| {
+            // The local system has its origin in the first joint.
+            worst(model, &state).map(|(lack, code, _, place)| (lack, code, place - Point::from([1.0, 0.0])))
+        })
+    };
+    for length in [3.0, 1e3, 5e23, 1e90] {
+        for angle in [-0.6f64, -0.2, 0.0, 0.7] {
+            let (sin, cos) = (libm::sin(angle), libm::cos(angle));
+            let middle = [-1.2 * sin, 1.2 * cos];
+            // One end near: of a segment that is far away at both ends the line is known only as well as those are.
+            let [back, on] = [-0.5, length].map(|way| [middle[0] + way * cos, middle[1] + way * sin]);
+            for (from, to) in [(back, on), (on, back)] {
+                let Some((lack, 2, place)) = clear(from, to, 0.5) else {
+                    panic!("{length} {angle}: no place between the ends")
+                };
+                assert!((place - Point::from(middle)).amax() < 1e-3, "{length} {angle}: {place}");
+                // The start is no circle yet.
+                assert!((lack - 0.3).abs() < 1e-5, "{length} {angle}: {lack}");
+                assert_eq!(clear(from, to, 0.199), None, "{length} {angle}");
+            }
+        }
+        // Far away at both ends, but along an axis.
+        for (from, to) in [([-length, 1.2], [length, 1.2]), ([length, 1.2], [-length, 1.2])] {
+            let Some((lack, 2, place)) = clear(from, to, 0.5) else { panic!("{length}: no place") };
+            assert!((place - Point::from([0.0, 1.2])).amax() < 1e-3, "{length}: {place}");
+            assert!((lack - 0.3).abs() < 1e-6, "{length}: {lack}");
+        }
+    }
+}
+
+/// Of many waves beside a wall one reaches nearer than the others.
+#[test]
+fn the_one_wave_that_is_too_near_a_wall_is_found() {
+    for high in [7, 20, 51] {
+        let waves: Vec<Joint> = (0..80)
+            .map(|k| {
+                let crest = if k % 2 == 0 { -0.5 } else { 0.5 };
+                Joint::at([k as f64, if k == high { 0.8 } else { crest }, 0.0])
+            })
+            .collect();
+        let wall = [Obstacle::segment([-3.0, 1.0, 0.0], [83.0, 1.0, 0.0], 0.3, Side::LEFT)];
+        with(&Curve::open(&waves).with_obstacles(&wall), |model, state| {
+            let found = worst(model, &state);
+            if high % 2 == 0 {
+                // A trough pulled up.
+                let Some((lack, 2, foot, _)) = found else { panic!("{high}: nothing") };
+                assert!(lack > 0.09 && foot.element.abs_diff(high) <= 1, "{high}: {lack} {}", foot.element);
+            } else {
+                let Some((lack, 2, foot, place)) = found else { panic!("{high}: nothing") };
+                assert!((0.1..0.2).contains(&lack) && (place[0] - high as f64).abs() < 0.2, "{lack} {place}");
+                assert!(foot.element.abs_diff(high) <= 1);
+            }
+        });
+    }
+}
+
+/// Against every place of random segments: where any is too near one is found, and where none is across the curve the worst.
+#[test]
+fn no_violation_of_random_segments_is_missed() {
+    let mut bits = 0x2545_f491_4f6c_dd1d_u64;
+    let mut random = || {
+        bits ^= bits << 13;
+        bits ^= bits >> 7;
+        bits ^= bits << 17;
+        (bits >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let (open, closed) = (joints(WAVE), joints(RING));
+    let (mut clear, mut near, mut across) = (0, 0, 0);
+    for round in 0..400 {
+        let [from, to] = [0; 2].map(|_| [12.0 * random() - 3.0, 12.0 * random() - 4.0, 0.0]);
+        let side = if round % 2 == 0 { Side::LEFT } else { Side::RIGHT };
+        let obstacle = [Obstacle::segment(from, to, 0.5 * random(), side)];
+        let curve =
+            if round % 4 < 2 { Curve::open(&open) } else { Curve { closed: true, ..Curve::open(&closed) } };
+        with(&curve.with_obstacles(&obstacle), |model, state| {
+            let [from, to] = [from, to].map(|[x, y, _]| Point::from([x, y]));
+            let lack = |place: Point| {
+                let foot = Foot::of(model, &state, &place, obstacle[0].clearance)?;
+                Some(obstacle[0].clearance - side.sign() * foot.left)
+            };
+            let lacks: Vec<_> =
+                (0..=2000).map(|k| lack(from + (to - from) * (f64::from(k) / 2000.0))).collect();
+            // The worst, but for places that the curve's end just passes.
+            let ends = [lacks[0], lacks[2000]].into_iter().flatten();
+            let inner = lacks.windows(3).filter_map(|three| {
+                let (Some(before), Some(here), Some(after)) = (three[0], three[1], three[2]) else {
+                    return None;
+                };
+                (here >= before && here >= after).then_some(here)
+            });
+            let most = ends.chain(inner).fold(f64::NEG_INFINITY, f64::larger);
+            let found = worst(model, &state);
+            let Some((most_found, _, foot, place)) = found else {
+                assert!(most < 1e-6, "round {round}: {most} was missed");
+                clear += 1;
+                return;
+            };
+            assert!(lack(place) == Some(most_found) && foot.left.abs() < 20.0);
+            if most <= obstacle[0].clearance {
+                near += 1;
+                assert!(most_found > most - 1e-9, "round {round}: {most_found} instead of {most}");
+            } else {
+                across += 1;
+            }
+        });
+    }
+    assert!(clear > 30 && near > 20 && across > 30, "{clear} {near} {across}");
 }
 
 /// Against a difference of the functional itself, at every node: ends have one element, others two.
@@ -247,7 +364,9 @@ fn a_contact_is_put_into_a_curve_without_changing_it() {
                 for (number, (_, centre)) in feet.iter().enumerate() {
                     let foot = {
                         let now = plain.touching(&touching.marks[..touching.nodes], touching.contacts);
-                        let Some(foot) = Foot::of(&now, touching.state, centre) else { panic!("a foot") };
+                        let Some(foot) = Foot::of(&now, touching.state, centre, 0.0) else {
+                            panic!("a foot")
+                        };
                         foot
                     };
                     touching.contacts[number] = (3 * number + 2 * number) as f64;
@@ -280,7 +399,7 @@ fn a_contact_is_put_into_a_curve_without_changing_it() {
                     for element in 0..now.element_count() {
                         for t in [0.0, 0.2, 0.5, 0.9] {
                             let (here, normal) = beside(&now, touching.state, element, t);
-                            let Some(foot) = Foot::of(plain, &before, &here) else { continue };
+                            let Some(foot) = Foot::of(plain, &before, &here, 0.0) else { continue };
                             let (was, normal_was) = beside(plain, &before, foot.element, foot.t);
                             assert!((here - was).amax() < 1e-9, "{element} {t}: {here} {was}");
                             assert!((normal - normal_was).amax() < 1e-7, "{element} {t}");
