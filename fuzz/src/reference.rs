@@ -137,6 +137,12 @@ impl Case {
             return;
         }
 
+        // Where two rules do not agree on what the elements cost, each leads to a minimum of its own.
+        TELL.call_once(tell_at_the_end);
+        if (report.fine_value - report.value).abs() > PROMISE * report.fine_value {
+            RULES.fetch_add(1, Ordering::Relaxed);
+            return;
+        }
         let list: Vec<ceres::Joint> = joints.iter().map(reference_joint).collect();
         let reference = ceres::Problem {
             elements_per_span: elements_per_span as usize,
@@ -176,7 +182,6 @@ impl Case {
         for (begins, start) in [(0, Start::Rows(&rows)), (1, Start::Thesis)] {
             let Ok(found) = ceres::solve(&reference, start, &newton) else { continue };
             let Some(value) = good(&found) else { continue };
-            TELL.call_once(tell_at_the_end);
             BOTH[begins].fetch_add(1, Ordering::Relaxed);
             if ours > value + allowed {
                 assert!(
@@ -203,6 +208,8 @@ fn is_same(ours: &[ceres::Rows], theirs: &[ceres::Rows]) -> bool {
 /// from the thesis's start.
 static BOTH: [AtomicUsize; 2] = [AtomicUsize::new(0), AtomicUsize::new(0)];
 static ELSEWHERE: [AtomicUsize; 2] = [AtomicUsize::new(0), AtomicUsize::new(0)];
+/// How many converged curves were not compared, because the rules differ on them.
+static RULES: AtomicUsize = AtomicUsize::new(0);
 
 unsafe extern "C" {
     fn atexit(last: extern "C" fn()) -> i32;
@@ -213,7 +220,9 @@ extern "C" fn tell() {
     let ([near, far], [near_lower, far_lower]) = (of(&BOTH), of(&ELSEWHERE));
     eprintln!(
         "both converged {near} times from minvar's result ({near_lower} times the reference went on to a lower minimum \
-         elsewhere) and {far} times from the thesis's start ({far_lower} times to a lower minimum elsewhere)"
+         elsewhere) and {far} times from the thesis's start ({far_lower} times to a lower minimum elsewhere); the rules \
+         differ on {} curves, which were not compared",
+        RULES.load(Ordering::Relaxed)
     );
 }
 

@@ -118,6 +118,26 @@ fn an_energy_does_not_hide_in_an_element_that_nearly_stops() {
 
 /// Nearly a whole turn around, with an end that looks a little aside: such data grow at first, and get few iterations then.
 #[test]
+fn what_the_least_speed_keeps_from_its_minimum_is_not_converged() {
+    // The short span is all but straight, and one element of it would rather stop at its end.
+    let joints = [
+        Joint::at([-9.75, -10.0, 0.0])
+            .with_tangent(Quantity::initial([-7.0, -10.0, 0.0]))
+            .with_curvature(Quantity::initial([1.638463841038081, -1.1469246887266566, 0.0])),
+        Joint::at([-9.75, 0.0, 0.0]),
+        Joint::at([-10.0, 0.0, 0.0]),
+        Joint::at([-9.0, -10.0, -10.0]),
+    ];
+    let solved = |elements_per_span| {
+        let options = Options { functional: Functional::MEC, elements_per_span, ..Options::DEFAULT };
+        solve_curve(&joints, false, &options).expect("good data").0
+    };
+    let (one, two) = (solved(1), solved(2));
+    assert_eq!((one.status, two.status), (Status::Stalled, Status::Converged));
+    assert!(one.fine_value > two.fine_value * (1.0 + 5e-6), "{one:?}\n{two:?}");
+}
+
+#[test]
 fn the_iteration_limit_is_named_only_where_it_was_reached() {
     for gap in [0.05f64, 0.02, 0.01] {
         let end = |at: f64, towards: f64| {

@@ -505,6 +505,12 @@ impl<const D: usize> Model<'_, D> {
         least
     }
 
+    /// Whether an element is as slow at an end as any may be.
+    pub(super) fn all_but_stops(&self, state: &[f64]) -> bool {
+        (0..self.element_count())
+            .any(|element| !is_faster(&[0, 1].map(|end| self.end(element, end, state)), SLOW * LEAST_SPEED))
+    }
+
     /// Half the sum of the speeds: about the length, and cheap.
     pub(super) fn rough_length(&self, state: &[f64]) -> f64 {
         let mut sum = 0.0;
@@ -801,9 +807,7 @@ where
 
     fn sums(&self, element: usize, state: &[f64]) -> [f64; 2] {
         let ends = [self.end(element, 0, state), self.end(element, 1, state)];
-        let chord = ends[1].point - ends[0].point;
-        let least = LEAST_SPEED * sqrt(chord.dot(&chord));
-        if !ends.iter().all(|end| end.speed > least) {
+        if !is_faster(&ends, LEAST_SPEED) {
             return [f64::INFINITY; 2];
         }
         let rows = rows_between(&ends);
@@ -1020,11 +1024,20 @@ fn plain_sums<const D: usize>(by_rows: &RowDerivatives<D>, first: [f64; 2]) -> [
     [if first[0] == 1.0 { own } else { own / first[0] }, by_rows.length]
 }
 
+/// Whether both ends of an element are faster than this fraction of its chord.
+fn is_faster<const D: usize>(ends: &[End<D>; 2], fraction: f64) -> bool {
+    let chord = ends[1].point - ends[0].point;
+    let least = fraction * sqrt(chord.dot(&chord));
+    ends.iter().all(|end| end.speed > least)
+}
+
 /// The logarithms of the speed ratio between an element's first end and its middle in the starts that are tried.
 const SKEWS: [f64; 3] = [0.15, -0.15, 0.0];
 /// The least speed at an end of an element, as a fraction of its chord: a quintic that nearly stops there is a bend of the
 /// parametrisation, not of the curve.
 const LEAST_SPEED: f64 = 0.02;
+/// Speeds up to so many times the least are kept by that bound.
+const SLOW: f64 = 1.01;
 /// A curve that became longer than its start by this factor grows without limit.
 const RUNAWAY: f64 = 100.0;
 

@@ -110,7 +110,9 @@ where
         report.status = lost;
     }
     if report.status == Status::Converged {
-        let regular = figures.irregular == 0;
+        // Where no Newton step tells how far the minimum is, an element at the least speed is kept from it by that bound.
+        let kept = !outcome.decrement.is_finite() && model.all_but_stops(state);
+        let regular = figures.irregular == 0 && !kept;
         let natural = model.natural_cost() * functional_scale(options, model.place.unit);
         let trusted = report.value.is_finite()
             && (report.fine_value - report.value).abs() <= TRUSTED * (report.value + NOTHING * natural);
