@@ -3,7 +3,7 @@
 use super::element::Element;
 use super::fairness::{Density, Shape};
 use super::figures::Figures;
-use super::joint::Given;
+use super::joint::{Continuity, Curve, Given, Quantity};
 use super::model::Model;
 use super::options::Options;
 use super::passes::{self, Passes};
@@ -110,8 +110,10 @@ where
         report.status = lost;
     }
     if report.status == Status::Converged {
-        // Where no Newton step tells how far the minimum is, an element at the least speed is kept from it by that bound.
-        let kept = !outcome.decrement.is_finite() && model.all_but_stops(state);
+        // Where no Newton step tells how far the minimum is, an element at the least speed is kept from it by that bound. An
+        // energy that has no minimum is meant to be.
+        let lacks = options.functional.bends() && !has_least_energy(&model.curve);
+        let kept = !lacks && !outcome.decrement.is_finite() && model.all_but_stops(state);
         let regular = figures.irregular == 0 && !kept;
         let natural = model.natural_cost() * functional_scale(options, model.place.unit);
         let trusted = report.value.is_finite()
@@ -161,6 +163,19 @@ const SUSPECT_GROWTH: f64 = 10.0;
 const LONG_GROWTH: f64 = 5.0;
 /// How much a curve must have grown that grew already when its directions alone were solved for, and ends in no minimum.
 const GROWS: f64 = 2.0;
+
+/// Whether an energy has a minimum and not only an infimum. A curvature that is given costs an energy nothing if the curve
+/// leaves it at once, ever more sharply; so does the common curvature of a G2 joint whose tangent is fixed.
+fn has_least_energy(curve: &Curve<'_>) -> bool {
+    let last = curve.joints.len().saturating_sub(1);
+    curve.joints.iter().enumerate().all(|(index, joint)| {
+        let inner = curve.closed || (index > 0 && index < last);
+        let [tangent, _] = joint.tangent.map(|tangent| tangent.given == Given::FIXED);
+        let split = inner && joint.continuity == Continuity::G2 && tangent;
+        let bent = |curvature: &Quantity| matches!(curvature.given, Given::FIXED | Given::SIZE);
+        !split && !joint.curvature.iter().any(bent)
+    })
+}
 
 /// The length of the polygon through the given positions, in the local unit; the start's where there is none.
 fn data_length<const D: usize>(model: &Model<'_, D>) -> f64 {
