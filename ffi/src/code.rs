@@ -132,8 +132,9 @@ pub enum minvar_status {
     MINVAR_UNSOLVED = 0,
     /// A minimum was reached: the functional cannot be lowered by what the tolerance asks for.
     MINVAR_CONVERGED = 1,
-    /// No further progress is possible though the tolerances are not met, or what was reached is no true minimum: a cusp,
-    /// or a functional that a finer quadrature does not confirm. More elements may help.
+    /// No further progress is possible though the tolerances are not met, or what was reached is no true minimum: a cusp, a
+    /// functional that a finer quadrature does not confirm, an element that would rather stop at its end. More elements may
+    /// help.
     MINVAR_STALLED = 2,
     /// The allowed number of iterations was used up.
     MINVAR_ITERATION_LIMIT = 3,

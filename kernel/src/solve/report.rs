@@ -10,8 +10,9 @@ pub enum Status {
     Unsolved = 0,
     /// A minimum was reached: the functional cannot be lowered beyond rounding.
     Converged = 1,
-    /// No further progress is possible though the tolerances are not met, or what was reached is no true minimum: a cusp,
-    /// or a functional that a finer quadrature does not confirm. More elements may help.
+    /// No further progress is possible though the tolerances are not met, or what was reached is no true minimum: a cusp, a
+    /// functional that a finer quadrature does not confirm, an element that would rather stop at its end. More elements may
+    /// help.
     Stalled = 2,
     /// The allowed number of iterations was used up, all of them.
     IterationLimit = 3,
